@@ -1,0 +1,47 @@
+//! Bounding volume hierarchy (SPEC section 4).
+
+use super::Record;
+use crate::math::Aabb;
+use bytemuck::{Pod, Zeroable};
+use glam::{Vec3A, Vec4};
+
+/// A node: 32 bytes, so that two siblings are one 64-byte read.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C, align(16))]
+pub struct BvhNode {
+    /// Smallest corner.
+    pub min: [f32; 3],
+    /// Inner node: index of the left child, always even; the right child follows it. Leaf: first record.
+    pub first: u32,
+    /// Largest corner.
+    pub max: [f32; 3],
+    /// Leaf: number of records, 1 to [`MAX_LEAF`]. Inner node: 0.
+    pub count: u32,
+}
+
+/// Most records a leaf may have: traversals pack a leaf into one word, four bits of it are the count.
+pub const MAX_LEAF: u32 = 15;
+
+impl BvhNode {
+    /// Both corners, loaded as 16-byte rows (see [`crate::math::Ray`] on the hidden fourth lane).
+    #[inline(always)]
+    pub fn corners(&self) -> (Vec3A, Vec3A) {
+        let rows: &[Vec4; 2] = bytemuck::cast_ref(self);
+        (Vec3A::from_vec4(rows[0]), Vec3A::from_vec4(rows[1]))
+    }
+}
+
+/// A built BVH. `nodes[0]` is the root, `nodes[1]` its dummy sibling (a copy of an empty leaf that no traversal visits),
+/// so siblings always lie at an even index and the next. A root that is a leaf has `count > 0`; an empty scene has
+/// `nodes[0].count == 0` with `first == 0`, which no inner node can have.
+#[derive(Clone, Debug)]
+pub struct Bvh {
+    /// Box around everything.
+    pub bounds: Aabb,
+    /// Nodes, pairs together.
+    pub nodes: Vec<BvhNode>,
+    /// Leaf by leaf.
+    pub records: Vec<Record>,
+    /// Levels of inner nodes on the longest way from the root to a leaf: what a stack must hold.
+    pub depth: u32,
+}

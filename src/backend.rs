@@ -1,0 +1,227 @@
+//! What a device must be able to do. Two implement it: [`crate::cpu`] and [`crate::gpu`].
+
+use crate::accel::{Structure, Traversal};
+use crate::camera::View;
+use crate::error::Result;
+use crate::math::Hit;
+use crate::scene::Scene;
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// Ray configuration (SPEC section 5).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Config {
+    /// Primary rays, shaded.
+    P,
+    /// And for each light one shadow ray.
+    PS,
+    /// And reflected rays from shiny surfaces, at most [`MAX_BOUNCES`].
+    PSR,
+}
+
+/// Most reflections that a primary ray may have (SPEC section 5).
+pub const MAX_BOUNCES: u32 = 2;
+
+impl Config {
+    /// All, in the thesis's order.
+    pub const ALL: [Config; 3] = [Config::P, Config::PS, Config::PSR];
+
+    /// True if shadow rays are cast.
+    pub fn shadows(self) -> bool {
+        self != Config::P
+    }
+
+    /// Reflections followed.
+    pub fn bounces(self) -> u32 {
+        if self == Config::PSR { MAX_BOUNCES } else { 0 }
+    }
+}
+
+/// What one ray type of one pixel cost. Six words, as the counting kernels write them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Counters {
+    /// Rays of this type.
+    pub rays: u32,
+    /// Inner nodes visited; the grid counts its cells here.
+    pub inner: u32,
+    /// Leaves visited (not counted by the grid).
+    pub leaves: u32,
+    /// Ray/triangle tests.
+    pub tests: u32,
+    /// Entries taken from a stack.
+    pub pops: u32,
+    /// Restarts at (or below) the root.
+    pub restarts: u32,
+}
+
+impl Counters {
+    /// Traversal steps: nodes visited, or cells for a grid (SPEC section 6).
+    pub fn steps(&self) -> u32 {
+        self.inner + self.leaves
+    }
+}
+
+/// Counters of one pixel by ray type: primary, shadow, reflected.
+pub type PixelCounters = [Counters; 3];
+
+/// Names of the ray types, in the order of [`PixelCounters`].
+pub const RAY_TYPES: [&str; 3] = ["primary", "shadow", "reflected"];
+
+/// What a timed kernel leaves behind for a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Pixel {
+    /// Nearest triangle of the primary ray, [`crate::math::MISS`] if none.
+    pub triangle: u32,
+    /// Shaded colour, 8 bits per channel, red in the low byte, alpha 255.
+    pub rgba: u32,
+}
+
+/// What output buffers are filled with before a kernel runs: no triangle, no colour (alpha 0).
+pub const POISON: u32 = 0xDEAD_BEEF;
+
+/// What a counting kernel leaves behind for a pixel (20 words).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct CountedPixel {
+    /// The same as the timed kernel's.
+    pub pixel: Pixel,
+    /// Distance of the primary ray's hit (bits of an f32); bits of [`crate::math::T_MAX`] for a miss.
+    pub t: u32,
+    /// Zero.
+    pub pad: u32,
+    /// By ray type.
+    pub counters: PixelCounters,
+}
+
+/// Width and height of an image in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Size {
+    /// Pixels per row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+impl Size {
+    /// Number of pixels.
+    pub fn pixels(self) -> usize {
+        self.width as usize * self.height as usize
+    }
+}
+
+/// How long one frame took.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FrameTime {
+    /// By the device's own timestamps, in nanoseconds; `None` where it has none.
+    pub device_ns: Option<u64>,
+    /// By the host's clock, from the previous frame's completion (or the start) to this one's, in nanoseconds.
+    pub wall_ns: u64,
+}
+
+/// What kind of device it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DeviceType {
+    /// The CPU twins of this crate.
+    CpuTwin,
+    /// A Vulkan driver that computes on the CPU (lavapipe): its times do not rank structures for a GPU.
+    SoftwareRasteriser,
+    /// A GPU that shares the CPU's memory.
+    IntegratedGpu,
+    /// A GPU of its own.
+    DiscreteGpu,
+    /// A GPU behind a hypervisor.
+    VirtualGpu,
+    /// Anything else.
+    Other,
+}
+
+/// A device, as it stands in a run's provenance.
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+pub struct DeviceInfo {
+    /// Adapter name, or the processor's name for the twins.
+    pub name: String,
+    /// Kind.
+    pub device_type: DeviceType,
+    /// `vulkan`, or `cpu` for the twins.
+    pub backend: String,
+    /// Driver name and version; empty for the twins.
+    pub driver: String,
+    /// Nanoseconds per timestamp tick; `None` without timestamps.
+    pub timestamp_period_ns: Option<f32>,
+    /// True if kernels are compiled with wgpu's bounds checks and loop bounds.
+    pub checked: bool,
+    /// Optional features that are in use, by name.
+    pub features: Vec<String>,
+    /// Limits that decide what fits, by name.
+    pub limits: std::collections::BTreeMap<String, u64>,
+    /// Threads that compute: of the twins, or of a software rasteriser.
+    pub threads: Option<usize>,
+}
+
+impl DeviceInfo {
+    /// True where device and twins agree to the bit: the twins themselves, and lavapipe (SPEC section 12).
+    pub fn is_exact(&self) -> bool {
+        matches!(self.device_type, DeviceType::CpuTwin | DeviceType::SoftwareRasteriser)
+    }
+}
+
+/// A ray given by a user.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GivenRay {
+    /// Start.
+    pub origin: Vec3,
+    /// Direction, any length but zero; distances are in units of it.
+    pub direction: Vec3,
+}
+
+/// Asked between frames; true ends the work with [`crate::Error::Interrupted`].
+pub type Interrupted<'a> = &'a dyn Fn() -> bool;
+
+/// An opened device.
+pub trait Backend {
+    /// What it is.
+    fn info(&self) -> &DeviceInfo;
+
+    /// Uploads scene and structure and makes ready to run `traversal` over it.
+    ///
+    /// # Errors
+    /// [`crate::Error::Device`] if it does not fit the device's limits.
+    fn prepare<'a>(
+        &'a self,
+        scene: &'a Scene,
+        structure: &'a Structure,
+        traversal: Traversal,
+    ) -> Result<Box<dyn Prepared + 'a>>;
+}
+
+/// A scene and a structure on a device, with one traversal.
+pub trait Prepared {
+    /// One frame by the timed kernel, into buffers filled with [`POISON`]; rows from the top.
+    fn image(&mut self, config: Config, view: &View, size: Size) -> Result<Vec<Pixel>>;
+
+    /// One frame by the counting kernel, into buffers filled with [`POISON`]. Rows from the top, handed over in bands
+    /// so that a large image needs no large buffer: `(first row, pixels of whole rows)`.
+    fn counted(
+        &mut self,
+        config: Config,
+        view: &View,
+        size: Size,
+        band: &mut dyn FnMut(u32, &[CountedPixel]),
+    ) -> Result<()>;
+
+    /// One pass over a path by the timed kernel: the time of each frame. Nothing is read back in between.
+    fn time_path(&mut self, config: Config, views: &[View], size: Size, interrupted: Interrupted)
+    -> Result<Vec<FrameTime>>;
+
+    /// Traces given rays: the nearest hit, or with `any_hit` whether anything is hit at all (`triangle` is 0 then, and
+    /// `t` is 0).
+    fn trace(&mut self, rays: &[GivenRay], any_hit: bool) -> Result<Vec<Hit>>;
+
+    /// Bytes allocated on the device for geometry (vertices, materials, lights) and for the structure (nodes and
+    /// records), in this order.
+    fn allocated(&self) -> (u64, u64);
+}

@@ -1,0 +1,31 @@
+//! rtbench: a headless benchmark for ray tracing on GPUs.
+//!
+//! Data flows down one staircase; a module uses only modules above it:
+//!
+//! | step | what it is |
+//! |---|---|
+//! | [`error`] | the one error that reaches a user: file, line, problem, mend |
+//! | [`math`] | boxes, rays, triangles and the two tests; the twin of `kernels/lib/geom.wgsl` |
+//! | [`scene`] | mesh, materials, lights; one file per format; procedural scenes |
+//! | [`camera`] | cameras, camera paths and their files |
+//! | [`accel`] | acceleration structures: builders, node layouts, validation, memory model |
+//! | [`backend`] | what a device must be able to do: render, count, time, trace |
+//! | [`cpu`] | a twin of every kernel, with the same names |
+//! | [`gpu`] | wgpu: devices, kernel assembly, uploads, timers. Only here stands a wgpu type |
+//! | [`bench`] | plan, verify, measure, statistics, environment. Only here is a clock read |
+//! | [`results`] | records and their schema, journal, CSV, JSON, tables |
+//! | [`cli`] | one file per command; only here is anything printed |
+
+pub mod accel;
+pub mod backend;
+pub mod bench;
+pub mod camera;
+pub mod cli;
+pub mod cpu;
+pub mod error;
+pub mod gpu;
+pub mod math;
+pub mod results;
+pub mod scene;
+
+pub use error::{Error, Result};

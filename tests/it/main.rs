@@ -1,0 +1,11 @@
+//! All integration tests, in one crate so that they link once.
+
+mod accel; // builders x degenerate inputs, validation, memory model, determinism
+mod camera; // camera paths: files, thinning, fitting, errors
+mod cli; // the program as a user runs it: outputs, exit codes, broken input
+mod kernels; // every kernel variant through naga, struct layouts, no GPU
+mod reference; // rays traced by Embree (needs RTBENCH_SCENES)
+mod results; // journal, CSV and JSON agree; statistics
+mod scene; // PLY of every kind, broken PLY of every kind, procedural scenes
+mod traversal; // every traversal against brute force, CPU twins and GPU
+mod verify; // the verifier notices one wrong pixel
