@@ -1,0 +1,137 @@
+//! The journal of a run: append-only, one JSON record per line, on disk as soon as it is written.
+
+use super::files;
+use super::record::{ConfigurationRecord, End, Provenance, Record, SCHEMA, StructureRecord};
+use crate::error::{Error, Result};
+use std::fs::{File, OpenOptions};
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+/// File name inside a run's folder.
+pub const FILE_NAME: &str = "journal.jsonl";
+
+/// Appends records.
+pub struct JournalWriter {
+    path: PathBuf,
+    file: File,
+    /// Bytes of whole lines: what to cut the file back to if a line gets no further than half.
+    length: u64,
+}
+
+impl JournalWriter {
+    /// Creates the run's folder and its journal, and writes the first line.
+    ///
+    /// # Errors
+    /// [`Error::Output`], or [`Error::Input`] if the folder is not empty.
+    pub fn create(folder: &Path, provenance: Provenance) -> Result<JournalWriter> {
+        files::create_run_folder(folder)?;
+        let path = folder.join(FILE_NAME);
+        let file = OpenOptions::new()
+            .append(true)
+            .create_new(true)
+            .open(&path)
+            .map_err(|source| Error::output(&path, source))?;
+        let mut writer = JournalWriter { path, file, length: 0 };
+        writer.write(&Record::Run(Box::new(provenance)))?;
+        Ok(writer)
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Appends one line and brings it to the disk. If that fails, the lines before it stay whole.
+    ///
+    /// # Errors
+    /// [`Error::Output`].
+    pub fn write(&mut self, record: &Record) -> Result<()> {
+        let output = |source| Error::output(&self.path, source);
+        let mut line = serde_json::to_vec(record).map_err(|e| output(e.into()))?;
+        line.push(b'\n');
+        if let Err(source) = self.file.write_all(&line) {
+            // Half a line is tolerated by the reader; none is nicer.
+            let _ = self.file.set_len(self.length);
+            return Err(output(source));
+        }
+        self.length += line.len() as u64;
+        match self.file.sync_data() {
+            // Some file systems have nothing to synchronise with.
+            Err(source) if !matches!(source.kind(), ErrorKind::InvalidInput | ErrorKind::Unsupported) => {
+                Err(output(source))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// A journal, read back.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Journal {
+    /// First line.
+    pub provenance: Provenance,
+    /// In the order of building.
+    pub structures: Vec<StructureRecord>,
+    /// In the order of measuring.
+    pub configurations: Vec<ConfigurationRecord>,
+    /// Last line, if the run ended in order.
+    pub end: Option<End>,
+    /// What had to be left out, in words: a last line that was cut off.
+    pub truncated: Option<String>,
+}
+
+impl Journal {
+    /// Reads a journal. A last line that was cut off is left out, and said to be.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with file and line for anything else that is not a journal of this schema.
+    pub fn read(path: &Path) -> Result<Journal> {
+        let bytes = std::fs::read(path)
+            .map_err(|e| Error::file(path, None, format!("cannot read: {e}"), "give a run's journal.jsonl"))?;
+        Journal::parse(path, &bytes)
+    }
+
+    /// Parses the bytes of a journal; `path` is for messages.
+    ///
+    /// # Errors
+    /// As [`Journal::read`].
+    pub fn parse(path: &Path, bytes: &[u8]) -> Result<Journal> {
+        let mut provenance: Option<Provenance> = None;
+        let (mut structures, mut configurations, mut end, mut truncated) = (Vec::new(), Vec::new(), None, None);
+        for (index, line) in bytes.split_inclusive(|&b| b == b'\n').enumerate() {
+            let number = index + 1;
+            let record = match serde_json::from_slice::<Record>(line) {
+                Ok(record) => record,
+                Err(_) if !line.ends_with(b"\n") && number > 1 => {
+                    truncated = Some(format!("line {number} of {} is cut off and left out", path.display()));
+                    break;
+                }
+                Err(e) => {
+                    let mend = "it is no journal of rtbench, or it was edited";
+                    return Err(Error::file(path, Some(number), format!("not a record: {e}"), mend));
+                }
+            };
+            match (record, provenance.is_some()) {
+                (Record::Run(run), false) if run.schema == SCHEMA => provenance = Some(*run),
+                (Record::Run(run), false) => {
+                    let problem = format!("schema {:?} instead of {SCHEMA:?}", run.schema);
+                    return Err(Error::file(path, Some(number), problem, "read it with the version that wrote it"));
+                }
+                (_, false) => {
+                    return Err(Error::file(path, Some(number), "the first line is no run's provenance", ""));
+                }
+                (Record::Run(_), true) => {
+                    let mend = "journals of several runs must not be joined";
+                    return Err(Error::file(path, Some(number), "a second provenance", mend));
+                }
+                (Record::Structure(structure), true) => structures.push(*structure),
+                (Record::Configuration(configuration), true) => configurations.push(*configuration),
+                (Record::End(last), true) => end = Some(last),
+            }
+        }
+        match provenance {
+            Some(provenance) => Ok(Journal { provenance, structures, configurations, end, truncated }),
+            None => Err(Error::file(path, None, "empty", "the run was killed before it began")),
+        }
+    }
+}

@@ -1,0 +1,401 @@
+//! The schema of a journal: one [`Record`] per line, the first one a [`Provenance`].
+
+use crate::backend::{Config, Counters, DeviceInfo};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Version of the schema; changes when a reader of old journals would misread new ones.
+pub const SCHEMA: &str = "rtbench/1";
+
+/// One line of a journal.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "record", rename_all = "kebab-case")]
+pub enum Record {
+    /// Where the run comes from: always the first line.
+    Run(Box<Provenance>),
+    /// A structure that was built.
+    Structure(Box<StructureRecord>),
+    /// A configuration that was measured, or the reason why it was not.
+    Configuration(Box<ConfigurationRecord>),
+    /// The run ended in order; absent where it was killed.
+    End(End),
+}
+
+/// Everything that one has to know to believe, repeat or refuse a run's numbers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Provenance {
+    /// [`SCHEMA`].
+    pub schema: String,
+    /// How the program was made.
+    pub program: Program,
+    /// Start, UTC, RFC 3339.
+    pub started: String,
+    /// Command line, the program's name included.
+    pub arguments: Vec<String>,
+    /// The device, its driver, features and limits.
+    pub device: DeviceInfo,
+    /// Why this device was taken.
+    pub device_reason: String,
+    /// The machine around it.
+    pub environment: Environment,
+    /// What was to be measured.
+    pub plan: PlanRecord,
+}
+
+/// How the program was made.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Program {
+    /// Crate version.
+    pub version: String,
+    /// Git revision, `unknown` outside a repository.
+    pub git_revision: String,
+    /// True if what the program is made of differed from that revision; `None` if unknown.
+    pub git_dirty: Option<bool>,
+    /// Compiler.
+    pub rustc: String,
+    /// Cargo profile.
+    pub profile: String,
+    /// Target triple.
+    pub target: String,
+    /// BLAKE3 of `Cargo.lock`.
+    pub lock_hash: String,
+    /// Versions of the packages that decide what a kernel becomes.
+    pub packages: BTreeMap<String, String>,
+}
+
+/// The machine, at the start of a run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Environment {
+    /// Operating system and its version.
+    pub os: String,
+    /// Kernel version.
+    pub kernel: String,
+    /// Processor architecture.
+    pub architecture: String,
+    /// Processor name.
+    pub cpu: String,
+    /// Threads that the process may use.
+    pub logical_cpus: usize,
+    /// Cores, where known.
+    pub physical_cpus: Option<usize>,
+    /// Frequency governor, where there is one.
+    pub governor: Option<String>,
+    /// Main memory in bytes.
+    pub memory_bytes: u64,
+    /// Load average over 1, 5 and 15 minutes: above the number of threads, times are not to be trusted.
+    pub load_average: [f64; 3],
+    /// Variables that change what is measured (`LP_NUM_THREADS`, `VK_*`, ...).
+    pub variables: BTreeMap<String, String>,
+}
+
+/// What was to be measured.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PlanRecord {
+    /// The preset that it began with.
+    pub preset: String,
+    /// Scenes as they were asked for.
+    pub scenes: Vec<String>,
+    /// Structures as they were asked for.
+    pub structures: Vec<String>,
+    /// Planned number of configurations.
+    pub configurations: usize,
+    /// Timed passes over each path.
+    pub passes: usize,
+    /// Untimed frames before the first pass.
+    pub warmup_frames: usize,
+    /// What the preset names and this machine does not have.
+    pub skipped: Vec<String>,
+}
+
+/// A scene, as it stands in every record of it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SceneRecord {
+    /// Short name.
+    pub name: String,
+    /// Content hash.
+    pub hash: String,
+    /// Number of triangles.
+    pub triangles: u64,
+    /// Number of vertices.
+    pub vertices: u64,
+    /// Number of lights of the scene itself.
+    pub lights: u64,
+    /// Triangles without area.
+    pub degenerate_triangles: u64,
+    /// Share of the surface that mirrors, 0 to 1.
+    pub mirror_share: f64,
+}
+
+/// What a structure looks like; `None` where a number has no meaning for it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StructureProperties {
+    /// Cells per axis.
+    pub cells: Option<[u64; 3]>,
+    /// Triangles in the fullest cell.
+    pub max_cell_triangles: Option<u64>,
+    /// Triangle records per triangle.
+    pub references_per_triangle: Option<f64>,
+    /// Leaves, empty ones included.
+    pub leaves: Option<u64>,
+    /// Leaves without a triangle.
+    pub empty_leaves: Option<u64>,
+    /// Triangles in the fullest leaf.
+    pub max_leaf_triangles: Option<u64>,
+    /// Nodes, inner ones and leaves.
+    pub nodes: Option<u64>,
+    /// Levels of inner nodes.
+    pub depth: Option<u64>,
+    /// Expected cost of a ray by the surface area heuristic.
+    pub sah_cost: Option<f64>,
+}
+
+/// A structure that was built.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StructureRecord {
+    /// Of this scene.
+    pub scene: SceneRecord,
+    /// Name as in `--structure`.
+    pub structure: String,
+    /// Options that differ from the defaults, or `default`.
+    pub variant: String,
+    /// Its properties.
+    pub properties: StructureProperties,
+    /// Build time in milliseconds; structures that share a tree also share its time.
+    pub build_ms: f64,
+    /// Threads that built it.
+    pub build_threads: usize,
+    /// Its sizes.
+    pub memory: Memory,
+}
+
+/// Sizes in bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Memory {
+    /// Nodes or cells, and triangle records: as allocated on the device, or in main memory where it was not uploaded.
+    pub structure_bytes: u64,
+    /// Vertices, materials and lights: likewise.
+    pub geometry_bytes: u64,
+    /// What the thesis would have counted (SPEC section 7).
+    pub thesis_bytes: u64,
+}
+
+/// A camera path, as it stands in a record.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PathRecord {
+    /// Name.
+    pub name: String,
+    /// Content hash.
+    pub hash: String,
+}
+
+/// Whether a configuration has a result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Status {
+    /// Verified and timed.
+    Ok,
+    /// Not timed; the message says why.
+    Error,
+}
+
+/// Why a configuration has no result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Failure {
+    /// The kernel ran and its answer is wrong.
+    Verification,
+    /// The device refuses it, or broke while running it.
+    Device,
+}
+
+/// Which clock gave the frame times.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TimingSource {
+    /// The device's timestamps.
+    Device,
+    /// The host's clock.
+    Wall,
+}
+
+/// Sums of [`Counters`] over pixels and frames.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CounterSums {
+    /// Rays of this type.
+    pub rays: u64,
+    /// Inner nodes, or cells of a grid.
+    pub inner: u64,
+    /// Leaves.
+    pub leaves: u64,
+    /// Ray/triangle tests.
+    pub tests: u64,
+    /// Entries taken from a stack.
+    pub pops: u64,
+    /// Restarts.
+    pub restarts: u64,
+}
+
+impl CounterSums {
+    /// Adds one pixel's counters.
+    pub fn add(&mut self, counters: &Counters) {
+        self.rays += u64::from(counters.rays);
+        self.inner += u64::from(counters.inner);
+        self.leaves += u64::from(counters.leaves);
+        self.tests += u64::from(counters.tests);
+        self.pops += u64::from(counters.pops);
+        self.restarts += u64::from(counters.restarts);
+    }
+
+    /// Traversal steps: nodes, or cells for a grid (SPEC section 6).
+    pub fn steps(&self) -> u64 {
+        self.inner + self.leaves
+    }
+}
+
+/// One comparison with the reference.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Verification {
+    /// Frame of the (thinned) path.
+    pub frame: usize,
+    /// Pixels per row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// True if everything agrees.
+    pub ok: bool,
+    /// True if hits and counters were compared with the CPU twin pixel by pixel.
+    pub twin: bool,
+    /// Primary rays compared.
+    pub rays: u64,
+    /// Of these, confirmed by brute force.
+    pub brute_checked: u64,
+    /// Primary rays whose hit differs.
+    pub hits_differing: u64,
+    /// Pixels whose counters differ.
+    pub counters_differing: u64,
+    /// Pixels whose colour differs by more than the stated amount.
+    pub colours_differing: u64,
+    /// Largest difference of a colour channel, of 255.
+    pub max_colour_difference: u8,
+    /// BLAKE3 of the image.
+    pub image_hash: String,
+    /// What was compared, or what disagrees.
+    pub message: String,
+}
+
+/// All timed frames: integers, nanoseconds, `[pass][frame]`.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Samples {
+    /// By the device's timestamps; absent where a single one is missing.
+    pub device_ns: Option<Vec<Vec<u64>>>,
+    /// By the host's clock.
+    pub wall_ns: Vec<Vec<u64>>,
+    /// Each whole pass by the host's clock, with everything that the harness does around it.
+    pub pass_ns: Vec<u64>,
+}
+
+/// One row of the summary.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ConfigurationRecord {
+    /// Scene.
+    pub scene: SceneRecord,
+    /// Camera path.
+    pub camera_path: PathRecord,
+    /// Structure's name.
+    pub structure: String,
+    /// Options that differ from the defaults, or `default`.
+    pub variant: String,
+    /// Ray configuration.
+    pub config: Config,
+    /// Pixels per row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Frames of the path.
+    pub frames: usize,
+    /// Timed passes over it.
+    pub passes: usize,
+    /// Whether there is a result.
+    pub status: Status,
+    /// Why not.
+    pub failure: Option<Failure>,
+    /// What went wrong, one line; empty if nothing did.
+    pub message: String,
+    /// What the user should know about a result all the same.
+    pub warnings: Vec<String>,
+    /// True if every comparison agreed.
+    pub verified: bool,
+    /// The comparisons.
+    pub verification: Vec<Verification>,
+    /// Path of the difference image inside the run's folder, where something disagreed.
+    pub difference: Option<String>,
+    /// BLAKE3 of the first frame at full size.
+    pub image_hash: Option<String>,
+    /// The same of the first structure measured with this scene, path, configuration and size: to compare with.
+    pub reference_image_hash: Option<String>,
+    /// By ray type (primary, shadow, reflected), over all frames.
+    pub counters: Option<[CounterSums; 3]>,
+    /// Sizes.
+    pub memory: Memory,
+    /// Build time in milliseconds.
+    pub build_ms: f64,
+    /// Threads that built it.
+    pub build_threads: usize,
+    /// Which clock the frame time is taken from.
+    pub timing_source: Option<TimingSource>,
+    /// Every timed frame.
+    pub samples: Option<Samples>,
+    /// Seconds spent on verification.
+    pub verification_s: f64,
+    /// Seconds spent on counting.
+    pub counting_s: f64,
+}
+
+impl ConfigurationRecord {
+    /// A record with nothing in it yet: an error row until something is measured.
+    pub fn new(config: Config) -> ConfigurationRecord {
+        ConfigurationRecord {
+            scene: SceneRecord::default(),
+            camera_path: PathRecord::default(),
+            structure: String::new(),
+            variant: String::new(),
+            config,
+            width: 0,
+            height: 0,
+            frames: 0,
+            passes: 0,
+            status: Status::Error,
+            failure: None,
+            message: String::new(),
+            warnings: Vec::new(),
+            verified: false,
+            verification: Vec::new(),
+            difference: None,
+            image_hash: None,
+            reference_image_hash: None,
+            counters: None,
+            memory: Memory::default(),
+            build_ms: 0.0,
+            build_threads: 0,
+            timing_source: None,
+            samples: None,
+            verification_s: 0.0,
+            counting_s: 0.0,
+        }
+    }
+}
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct End {
+    /// UTC, RFC 3339.
+    pub ended: String,
+    /// True after Ctrl-C.
+    pub interrupted: bool,
+    /// True if everything planned has its row.
+    pub complete: bool,
+    /// Load average at the end.
+    pub load_average: [f64; 3],
+    /// Why it ended early, if it did.
+    pub message: String,
+}
