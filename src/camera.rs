@@ -63,24 +63,48 @@ pub struct CameraPath(String);
 impl CameraPath {
     /// stub
     pub fn load(name: &str) -> Result<CameraPath> {
-        if ["orbit", "light-orbit"].contains(&name) { Ok(CameraPath(name.into())) } else { Err(Error::argument("--camera-path", format!("no camera path {name}"), "there are orbit, light-orbit")) }
+        if ["orbit", "light-orbit"].contains(&name) {
+            Ok(CameraPath(name.into()))
+        } else {
+            Err(Error::argument("--camera-path", format!("no camera path {name}"), "there are orbit, light-orbit"))
+        }
     }
     /// stub
-    pub fn names() -> Vec<&'static str> { vec!["orbit", "light-orbit"] }
+    pub fn names() -> Vec<&'static str> {
+        vec!["orbit", "light-orbit"]
+    }
     /// stub
-    pub fn for_scene(_: &Scene, c: Config) -> CameraPath { CameraPath(if c == Config::P { "orbit" } else { "light-orbit" }.into()) }
+    pub fn for_scene(_: &Scene, c: Config) -> CameraPath {
+        CameraPath(if c == Config::P { "orbit" } else { "light-orbit" }.into())
+    }
     /// stub
-    pub fn name(&self) -> &str { &self.0 }
+    pub fn name(&self) -> &str {
+        &self.0
+    }
     /// stub
-    pub fn content_hash(&self) -> String { blake3::hash(self.0.as_bytes()).to_hex().to_string() }
+    pub fn content_hash(&self) -> String {
+        blake3::hash(self.0.as_bytes()).to_hex().to_string()
+    }
     /// stub
     pub fn views(&self, scene: &Scene, frames: Option<usize>) -> Result<Vec<View>> {
         let n = frames.unwrap_or(400);
-        if n == 0 || n > 400 { return Err(Error::argument("--frames", format!("{n} frames"), "1 to 400")); }
-        Ok((0..n).map(|i| {
-            let a = if self.0 == "orbit" { i as f32 / n as f32 * 6.2831 } else { 0.0 };
-            let d = Vec3::new(a.cos(), 0.2, a.sin());
-            View { camera: Camera { position: scene.bounds().center() + d * 4.0, direction: -d.normalize(), up: Vec3::Y, field_of_view: 45.0 }, lights: scene.lights.clone() }
-        }).collect())
+        if n == 0 || n > 400 {
+            return Err(Error::argument("--frames", format!("{n} frames"), "1 to 400"));
+        }
+        Ok((0..n)
+            .map(|i| {
+                let a = if self.0 == "orbit" { i as f32 / n as f32 * 6.2831 } else { 0.0 };
+                let d = Vec3::new(a.cos(), 0.2, a.sin());
+                View {
+                    camera: Camera {
+                        position: scene.bounds().center() + d * 4.0,
+                        direction: -d.normalize(),
+                        up: Vec3::Y,
+                        field_of_view: 45.0,
+                    },
+                    lights: scene.lights.clone(),
+                }
+            })
+            .collect())
     }
 }

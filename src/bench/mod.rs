@@ -1,4 +1,10 @@
-//! Measuring: the plan of a sweep, verification before timing, statistics, the machine's description. Only here (and
-//! in build statistics) is a clock read.
+//! Measuring: the plan of a sweep, verification before timing, the clock, the machine's description. Only here (and
+//! in build statistics) is a clock read. What is measured leaves as [`crate::results`] records and nothing else.
 
+pub mod configuration;
+pub mod environment;
+pub mod measure;
+pub mod plan;
+pub mod preset;
+pub mod sweep;
 pub mod verify;

@@ -1,6 +1,106 @@
-//! cli
+//! The command line. One file per command; only here is anything printed.
+//!
+//! Results go to standard output, everything else to standard error. Exit codes: 0 all is well, 1 a kernel's answer was
+//! wrong, 2 something could not run, 130 Ctrl-C.
+
+mod build;
+mod completions;
+mod device;
+mod devices;
+mod output;
+mod progress;
+mod render;
+mod scenes;
+mod structures;
+mod sweep;
+mod trace;
+
+use crate::bench::environment;
+use crate::error::Result;
+use clap::error::ErrorKind;
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// Ray tracing on a GPU with a uniform grid, a kd-tree and a BVH, measured against each other.
+#[derive(Parser)]
+#[command(name = "rtbench", version = environment::VERSION, max_term_width = 100, arg_required_else_help = true, after_help = AFTER_HELP)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const AFTER_HELP: &str = "\
+Begin with:
+  rtbench sweep                          measure everything on built-in scenes, in minutes
+  rtbench sweep --scene bunny.ply        the same for a scene of your own
+  rtbench render --scene hall -o hall.png
+  rtbench devices                        what there is to measure
+
+Exit codes: 0 all is well, 1 a kernel's answer was wrong, 2 something could not run, 130 Ctrl-C.";
+
+#[derive(Subcommand)]
+enum Command {
+    Sweep(sweep::Arguments),
+    Render(render::Arguments),
+    Build(build::Arguments),
+    Trace(trace::Arguments),
+    #[command(subcommand)]
+    Scenes(scenes::Command),
+    Structures(structures::Arguments),
+    Devices(devices::Arguments),
+    Completions(completions::Arguments),
+}
 
 /// Runs the program.
-pub fn main() -> std::process::ExitCode {
-    std::process::ExitCode::SUCCESS
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => return usage(&error),
+    };
+    match run(cli.command) {
+        Ok(code) => code,
+        Err(error) => {
+            output::complain(&error.to_string());
+            ExitCode::from(error.exit_code())
+        }
+    }
+}
+
+fn run(command: Command) -> Result<ExitCode> {
+    let done = |()| ExitCode::SUCCESS;
+    match command {
+        Command::Sweep(arguments) => sweep::run(&arguments),
+        Command::Render(arguments) => render::run(&arguments).map(done),
+        Command::Build(arguments) => build::run(&arguments),
+        Command::Trace(arguments) => trace::run(&arguments).map(done),
+        Command::Scenes(command) => scenes::run(&command).map(done),
+        Command::Structures(arguments) => structures::run(&arguments).map(done),
+        Command::Devices(arguments) => devices::run(&arguments).map(done),
+        Command::Completions(arguments) => completions::run(&arguments).map(done),
+    }
+}
+
+/// What clap has to say: help and version go to standard output, a mistake becomes one line like every other error.
+fn usage(error: &clap::Error) -> ExitCode {
+    match error.kind() {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+            // A reader that closed the pipe has read enough.
+            let _ = error.print();
+            ExitCode::SUCCESS
+        }
+        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+            let _ = error.print();
+            ExitCode::from(2)
+        }
+        _ => {
+            let text = error.render().to_string();
+            let lines = text.lines().map(str::trim).take_while(|line| !line.starts_with("Usage:"));
+            let words: Vec<&str> = lines
+                .filter(|line| !line.is_empty() && !line.starts_with("For more information"))
+                .map(|line| line.trim_start_matches("error: ").trim_start_matches("tip: "))
+                .collect();
+            output::complain(&format!("{} (see --help)", words.join("; ")));
+            ExitCode::from(2)
+        }
+    }
 }

@@ -15,8 +15,7 @@ pub fn replace(path: &Path, content: &[u8]) -> Result<()> {
     // A link is followed first: it is its target that is to be replaced.
     let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     if fs::metadata(&path).is_ok_and(|m| !m.is_file()) {
-        let mut file =
-            fs::OpenOptions::new().write(true).open(&path).map_err(|source| Error::output(&path, source))?;
+        let mut file = fs::OpenOptions::new().write(true).open(&path).map_err(|source| Error::output(&path, source))?;
         return file.write_all(content).map_err(|source| Error::output(&path, source));
     }
     let temporary = neighbour(&path);
@@ -55,4 +54,19 @@ pub fn create_run_folder(path: &Path) -> Result<()> {
         ));
     }
     Ok(())
+}
+
+/// A name as a part of a file's name: letters, digits, dots and single dashes.
+pub fn slug(name: &str) -> String {
+    let mut slug = String::new();
+    for c in name.chars() {
+        if c.is_alphanumeric() || c == '.' {
+            slug.extend(c.to_lowercase());
+        } else if !slug.ends_with('-') {
+            slug.push('-');
+        }
+    }
+    let slug = slug.trim_matches(['-', '.']);
+    // File systems end names at 255 bytes; a scene's name may be any file's.
+    slug.chars().take(80).collect()
 }

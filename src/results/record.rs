@@ -1,5 +1,6 @@
 //! The schema of a journal: one [`Record`] per line, the first one a [`Provenance`].
 
+use crate::accel::Properties;
 use crate::backend::{Config, Counters, DeviceInfo};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -147,6 +148,26 @@ pub struct StructureProperties {
     pub depth: Option<u64>,
     /// Expected cost of a ray by the surface area heuristic.
     pub sah_cost: Option<f64>,
+}
+
+impl From<Properties> for StructureProperties {
+    fn from(p: Properties) -> Self {
+        let cells = match p.cells {
+            [Some(x), Some(y), Some(z)] => Some([x, y, z].map(u64::from)),
+            _ => None,
+        };
+        StructureProperties {
+            cells,
+            max_cell_triangles: p.max_cell_triangles.map(u64::from),
+            references_per_triangle: p.references_per_triangle,
+            leaves: p.leaves.map(u64::from),
+            empty_leaves: p.empty_leaves.map(u64::from),
+            max_leaf_triangles: p.max_leaf_triangles.map(u64::from),
+            nodes: p.nodes.map(u64::from),
+            depth: p.depth.map(u64::from),
+            sah_cost: p.sah_cost,
+        }
+    }
 }
 
 /// A structure that was built.

@@ -213,6 +213,7 @@ pub fn run(run: &Run) -> String {
         text.push('\n');
     }
     text += &configurations(&run.run.device, &run.configurations);
-    text += "steps, tests and restarts: of primary rays under P, of shadow rays under PS, of reflected rays under PSR\n";
+    text +=
+        "steps, tests and restarts: of primary rays under P, of shadow rays under PS, of reflected rays under PSR\n";
     text
 }

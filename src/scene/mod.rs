@@ -39,14 +39,7 @@ pub struct Material {
 impl Material {
     /// A matt material of one colour, with a little ambient light.
     pub fn matt(diffuse: Vec3) -> Material {
-        Material {
-            ambient: diffuse * 0.1,
-            reflectivity: 0.0,
-            diffuse,
-            exponent: 1.0,
-            specular: Vec3::ZERO,
-            pad: 0.0,
-        }
+        Material { ambient: diffuse * 0.1, reflectivity: 0.0, diffuse, exponent: 1.0, specular: Vec3::ZERO, pad: 0.0 }
     }
 
     /// With a highlight and a mirror's share.
@@ -108,9 +101,7 @@ impl Scene {
 
     /// The box around all triangles.
     pub fn bounds(&self) -> Aabb {
-        Aabb::from_points(
-            self.triangles.iter().flat_map(|t| t.vertices).map(|v| self.vertices[v as usize].position),
-        )
+        Aabb::from_points(self.triangles.iter().flat_map(|t| t.vertices).map(|v| self.vertices[v as usize].position))
     }
 }
 
@@ -122,7 +113,12 @@ pub fn load(what: &str) -> Result<Scene> {
     }
     let n: u32 = options.strip_prefix("triangles=").map_or(Ok(200), str::parse).unwrap_or(200);
     let rings = ((n / 2) as f32).sqrt() as u32;
-    let mut s = Scene { name: what.into(), materials: vec![Material::matt(Vec3::splat(0.7))], lights: vec![Light::new(Vec3::splat(5.0), Vec3::ONE)], ..Scene::default() };
+    let mut s = Scene {
+        name: what.into(),
+        materials: vec![Material::matt(Vec3::splat(0.7))],
+        lights: vec![Light::new(Vec3::splat(5.0), Vec3::ONE)],
+        ..Scene::default()
+    };
     for i in 0..=rings {
         for j in 0..=rings {
             let (a, b) = (i as f32 / rings as f32 * 3.1415, j as f32 / rings as f32 * 6.2831);
@@ -142,17 +138,29 @@ pub fn load(what: &str) -> Result<Scene> {
 
 // ---- stub ----
 /// A built-in scene.
-pub struct SceneInfo { /// Name
-    pub name: &'static str, /// Summary
-    pub summary: &'static str, /// Parameters
-    pub parameters: &'static str }
+pub struct SceneInfo {
+    /// Name
+    pub name: &'static str,
+    /// Summary
+    pub summary: &'static str,
+    /// Parameters
+    pub parameters: &'static str,
+}
 /// stub
-pub fn list() -> Vec<SceneInfo> { vec![SceneInfo { name: "scan", summary: "an object", parameters: "triangles" }] }
+pub fn list() -> Vec<SceneInfo> {
+    vec![SceneInfo { name: "scan", summary: "an object", parameters: "triangles" }]
+}
 impl Scene {
     /// stub
-    pub fn content_hash(&self) -> String { blake3::hash(bytemuck::cast_slice(&self.vertices)).to_hex().to_string() }
+    pub fn content_hash(&self) -> String {
+        blake3::hash(bytemuck::cast_slice(&self.vertices)).to_hex().to_string()
+    }
     /// stub
-    pub fn mirror_share(&self) -> f32 { 0.0 }
+    pub fn mirror_share(&self) -> f32 {
+        0.0
+    }
     /// stub
-    pub fn check(&self) -> Result<()> { Ok(()) }
+    pub fn check(&self) -> Result<()> {
+        Ok(())
+    }
 }

@@ -1,0 +1,50 @@
+//! Tells the program where it comes from: git revision, whether it was changed since, compiler, profile, target.
+//! Nothing here may fail: a tarball without git builds as well, and says `unknown`.
+
+use std::path::Path;
+use std::process::Command;
+
+/// What the program is made of: only a change here makes it dirty.
+const SOURCES: [&str; 7] = ["src", "kernels", "camera-paths", "presets", "Cargo.toml", "Cargo.lock", "build.rs"];
+
+fn main() {
+    let revision = revision();
+    let dirty = revision.as_ref().and_then(|_| {
+        let mut arguments = vec!["status", "--porcelain", "--"];
+        arguments.extend(SOURCES.iter().filter(|path| Path::new(path).exists()));
+        git(&arguments).map(|changes| !changes.is_empty())
+    });
+    let set = |name: &str, value: &str| println!("cargo::rustc-env=RTBENCH_{name}={value}");
+    set("GIT_REVISION", revision.as_deref().unwrap_or("unknown"));
+    set("GIT_DIRTY", dirty.map_or("unknown", |d| if d { "true" } else { "false" }));
+    let compiler = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".into());
+    set("RUSTC", output(&compiler, &["--version"]).as_deref().unwrap_or("unknown"));
+    set("PROFILE", &std::env::var("PROFILE").unwrap_or_else(|_| "unknown".into()));
+    set("TARGET", &std::env::var("TARGET").unwrap_or_else(|_| "unknown".into()));
+
+    for path in SOURCES.iter().filter(|path| Path::new(path).exists()) {
+        println!("cargo::rerun-if-changed={path}");
+    }
+    // The log of HEAD grows with every commit and checkout. (The index would do too, but `git status` alone touches it.)
+    if let Some(log) = git(&["rev-parse", "--git-path", "logs/HEAD"]).filter(|log| Path::new(log).exists()) {
+        println!("cargo::rerun-if-changed={log}");
+    }
+}
+
+/// The revision, if this folder is the top of a repository: a tarball unpacked inside another project's repository
+/// must not take on that project's revision.
+fn revision() -> Option<String> {
+    let top = std::fs::canonicalize(git(&["rev-parse", "--show-toplevel"])?).ok()?;
+    let here = std::fs::canonicalize(".").ok()?;
+    if top == here { git(&["rev-parse", "HEAD"]) } else { None }
+}
+
+fn git(arguments: &[&str]) -> Option<String> {
+    output("git", arguments)
+}
+
+/// Standard output, trimmed; `None` if the program is missing or fails.
+fn output(program: &str, arguments: &[&str]) -> Option<String> {
+    let output = Command::new(program).args(arguments).output().ok().filter(|o| o.status.success())?;
+    Some(String::from_utf8(output.stdout).ok()?.trim().to_owned())
+}

@@ -1,0 +1,94 @@
+//! Presets: sweeps as data files in `presets/`, part of the program. A file of one's own works as well.
+
+use crate::error::{Error, Result};
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+
+/// Names and contents of the presets that the program brings.
+const EMBEDDED: [(&str, &str); 2] =
+    [("quick", include_str!("../../presets/quick.toml")), ("thesis", include_str!("../../presets/thesis.toml"))];
+
+/// A sweep as a file describes it; every value as a user would type it.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Preset {
+    /// Name, or the file's path.
+    #[serde(skip)]
+    pub name: String,
+    /// As for `--structure`.
+    pub structures: Vec<String>,
+    /// As for `--config`.
+    pub configs: Vec<String>,
+    /// As for `--resolution`.
+    pub resolutions: Vec<String>,
+    /// Frames that each path is thinned to; all where absent.
+    pub frames: Option<usize>,
+    /// Timed passes over each path.
+    pub passes: usize,
+    /// Untimed frames before the first pass.
+    pub warmup_frames: usize,
+    /// Scenes.
+    pub scene: Vec<PresetScene>,
+}
+
+/// A scene of a preset.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PresetScene {
+    /// A built-in scene with its parameters; a mere name where there are `files`.
+    pub scene: String,
+    /// Where the file may lie inside the folder of scenes; the first that exists is taken.
+    #[serde(default)]
+    pub files: Vec<PathBuf>,
+    /// Where to get it.
+    #[serde(default)]
+    pub source: String,
+}
+
+impl Preset {
+    /// Finds a preset by name, or reads one from a file.
+    ///
+    /// # Errors
+    /// [`Error::Input`]: no such preset, or a file that is none, with its line.
+    pub fn load(name: &str) -> Result<Preset> {
+        if let Some((_, text)) = EMBEDDED.iter().find(|(known, _)| *known == name) {
+            return Preset::parse(name, text);
+        }
+        let path = Path::new(name);
+        if path.extension().is_none() {
+            let known = EMBEDDED.map(|(name, _)| name).join(", ");
+            let mend = format!("there are {known}; or give a TOML file");
+            return Err(Error::argument("--preset", format!("no preset {name:?}"), mend));
+        }
+        let text = std::fs::read_to_string(path)
+            .map_err(|e| Error::file(path, None, format!("cannot read: {e}"), "give a preset's TOML file"))?;
+        Preset::parse(name, &text)
+    }
+
+    fn parse(name: &str, text: &str) -> Result<Preset> {
+        let mut preset: Preset = toml::from_str(text).map_err(|e| {
+            let line = e.span().map(|span| 1 + text[..span.start].matches('\n').count());
+            Error::file(Path::new(name), line, e.message().replace('\n', ", "), "see presets/quick.toml")
+        })?;
+        preset.name = name.to_owned();
+        Ok(preset)
+    }
+}
+
+impl PresetScene {
+    /// What to load: the scene itself, or its file inside `folder`. `Err` says in words what is absent and where to
+    /// get it.
+    pub fn locate(&self, folder: Option<&Path>) -> std::result::Result<String, String> {
+        if self.files.is_empty() {
+            return Ok(self.scene.clone());
+        }
+        let found = folder.and_then(|f| self.files.iter().map(|file| f.join(file)).find(|path| path.is_file()));
+        found.map(|path| path.display().to_string()).ok_or_else(|| {
+            let place = match folder {
+                None => "no folder of scenes is given (--scenes-dir or RTBENCH_SCENES)".into(),
+                Some(folder) => format!("{} has no {}", folder.display(), self.files[0].display()),
+            };
+            format!("{}: {place}; get it from {}", self.scene, self.source)
+        })
+    }
+}

@@ -1,0 +1,318 @@
+//! The sweep: for each scene and structure, every configuration is verified, counted and timed, in this order, and
+//! its record is on the disk before the next one begins.
+
+use super::configuration::{self, Candidate, Context, Subject};
+use super::environment;
+use super::plan::{self, Plan};
+use super::verify::Verifier;
+use crate::accel::{Built, Selection, Structure};
+use crate::backend::{Backend, Interrupted, Prepared, Size};
+use crate::error::{Error, Result};
+use crate::results::journal::{self, Journal, JournalWriter};
+use crate::results::record::{ConfigurationRecord, End, Failure, Memory, Provenance, Record, SCHEMA, StructureRecord};
+use crate::results::summary::Run;
+use crate::scene::{self, Scene};
+use std::collections::{HashMap, VecDeque};
+use std::path::Path;
+
+/// An opened device, and why it was taken.
+pub struct Opened {
+    /// The device.
+    pub backend: Box<dyn Backend>,
+    /// For the user and the record.
+    pub reason: String,
+}
+
+/// What a sweep tells whoever is watching.
+pub enum Event<'a> {
+    /// Something is being done that takes a moment.
+    Doing(String),
+    /// A structure is built.
+    Built(&'a StructureRecord),
+    /// This much of the planned work (see [`Plan::work`]) is behind us.
+    Work(u64),
+    /// A configuration has its record.
+    Finished(&'a ConfigurationRecord),
+    /// Something that the user should read.
+    Note(String),
+}
+
+/// Everything that a sweep needs.
+pub struct Job<'a> {
+    /// What to measure.
+    pub plan: &'a Plan,
+    /// Folder of the run; new or empty.
+    pub out: &'a Path,
+    /// Threads for building, 0 for all.
+    pub threads: usize,
+    /// Command line.
+    pub arguments: Vec<String>,
+    /// The device, open already.
+    pub device: Opened,
+    /// Opens it again after it was lost.
+    pub open: &'a dyn Fn() -> Result<Opened>,
+    /// Ctrl-C.
+    pub interrupted: Interrupted<'a>,
+    /// Who is watching.
+    pub watch: &'a mut dyn FnMut(Event),
+}
+
+/// How a sweep ended.
+#[derive(Debug)]
+pub struct Outcome {
+    /// Everything that was derived from the journal.
+    pub run: Run,
+    /// Configurations whose answer was wrong.
+    pub disagreeing: usize,
+    /// Configurations that could not run.
+    pub failed: usize,
+}
+
+/// Runs a sweep. Whatever happens, the journal holds every row measured until then, and the files derived from it are
+/// written.
+///
+/// # Errors
+/// [`Error::Interrupted`], [`Error::Output`], [`Error::Input`] of a scene, or a lost device that does not come back.
+pub fn run(job: Job) -> Result<Outcome> {
+    let provenance = Provenance {
+        schema: SCHEMA.into(),
+        program: environment::program(),
+        started: environment::now(),
+        arguments: job.arguments,
+        device: job.device.backend.info().clone(),
+        device_reason: job.device.reason.clone(),
+        environment: environment::capture(),
+        plan: job.plan.record(),
+    };
+    let mut journal = JournalWriter::create(job.out, provenance)?;
+    let exact = job.device.backend.info().is_exact();
+    let (plan, out) = (job.plan, job.out);
+    let mut sweep = Sweep {
+        context: Context { plan, out, exact, interrupted: job.interrupted, watch: job.watch },
+        threads: job.threads,
+        device_name: job.device.backend.info().name.clone(),
+        device: Some(job.device),
+        open: job.open,
+        journal: &mut journal,
+    };
+    let ended = plan.scenes.iter().try_for_each(|what| sweep.scene(what));
+    let closed = journal.write(&Record::End(End {
+        ended: environment::now(),
+        interrupted: matches!(ended, Err(Error::Interrupted)),
+        complete: ended.is_ok(),
+        load_average: environment::load_average(),
+        message: ended.as_ref().err().map(Error::to_string).unwrap_or_default(),
+    }));
+    let derived = derive(out);
+    // What went wrong first is what the user has to know.
+    ended.and(closed).and(derived)
+}
+
+/// Writes the files that are derived from a run's journal.
+fn derive(out: &Path) -> Result<Outcome> {
+    let journal = Journal::read(&out.join(journal::FILE_NAME))?;
+    let run = Run::new(&journal);
+    run.write(out)?;
+    let count = |kind| journal.configurations.iter().filter(|c| c.failure == Some(kind)).count();
+    Ok(Outcome { run, disagreeing: count(Failure::Verification), failed: count(Failure::Device) })
+}
+
+/// A running sweep.
+struct Sweep<'a, 'j> {
+    context: Context<'a>,
+    threads: usize,
+    /// `None` after it was lost, until something needs it again.
+    device: Option<Opened>,
+    device_name: String,
+    open: &'a dyn Fn() -> Result<Opened>,
+    journal: &'j mut JournalWriter,
+}
+
+impl Sweep<'_, '_> {
+    fn say(&mut self, event: Event) {
+        (self.context.watch)(event);
+    }
+
+    /// Load a scene, build its structures one after another, and measure each.
+    fn scene(&mut self, what: &str) -> Result<()> {
+        self.context.check_interrupt()?;
+        let plan = self.context.plan;
+        self.say(Event::Doing(format!("loading {what}")));
+        let scene = scene::load(what)?;
+        for warning in &scene.warnings {
+            self.say(Event::Note(format!("{}: {warning}", scene.name)));
+        }
+        let paths: Result<Vec<_>> = plan.configs.iter().map(|&c| Ok((c, plan.path(&scene, c)?))).collect();
+        // The reference is traced through this tree, and confirmed by brute force (see `verify`).
+        let reference_selection = Selection::parse("bvh")?;
+        let reference = reference_selection.build(&scene, self.threads)?;
+        let Structure::Bvh(reference_tree) = &reference.structure else {
+            return Err(Error::Device("the reference structure is no BVH".into()));
+        };
+        let mut subject = Subject {
+            scene: &scene,
+            record: plan::scene_record(&scene),
+            paths: paths?,
+            verifier: Verifier::new(&scene, reference_tree),
+            images: HashMap::new(),
+        };
+        // Each distinct tree is built once, serves all traversals over it, and is freed before the next is built.
+        let mut waiting: Vec<&Selection> = plan.selections.iter().collect();
+        while let Some(&first) = waiting.first() {
+            self.context.check_interrupt()?;
+            let (same, others): (Vec<_>, Vec<_>) =
+                waiting.into_iter().partition(|s| s.build_key() == first.build_key());
+            waiting = others;
+            if first.build_key() == reference_selection.build_key() {
+                self.structures(&mut subject, &same, &reference)?;
+                continue;
+            }
+            self.say(Event::Doing(format!("building {} of {}", first.name(), scene.name)));
+            match first.build(&scene, self.threads) {
+                Ok(built) => self.structures(&mut subject, &same, &built)?,
+                // What cannot be built for this scene is no reason to leave the others unmeasured.
+                Err(Error::Device(message)) => {
+                    for selection in same {
+                        for (path, size) in configurations(plan, &subject) {
+                            self.unable(&subject, selection, None, path, size, &message)?;
+                        }
+                    }
+                }
+                Err(other) => return Err(other),
+            }
+        }
+        Ok(())
+    }
+
+    /// Measure all traversals over one built structure.
+    fn structures(&mut self, subject: &mut Subject, selections: &[&Selection], built: &Built) -> Result<()> {
+        selections.iter().try_for_each(|selection| self.structure(subject, selection, built))
+    }
+
+    /// Measure all configurations of one structure and traversal. A lost device costs the configuration that lost it,
+    /// and is opened again for the next.
+    fn structure(&mut self, subject: &mut Subject, selection: &Selection, built: &Built) -> Result<()> {
+        let scene = subject.scene;
+        let mut waiting = VecDeque::from(configurations(self.context.plan, subject));
+        let mut candidate = Candidate { selection, built, memory: Memory::default(), small: HashMap::new() };
+        let mut recorded = false;
+        while !waiting.is_empty() {
+            // Held here, so that what is prepared on the device may borrow it while `self` writes records.
+            let device = match self.device.take() {
+                Some(device) => device,
+                None => self.reopen()?,
+            };
+            let lost = {
+                let prepared = device.backend.prepare(scene, &built.structure, selection.traversal());
+                if !recorded {
+                    recorded = true;
+                    candidate.memory = memory(built, scene, prepared.as_ref().ok().map(|p| p.allocated()));
+                    let mut record = configuration::structure_record(subject, selection, built);
+                    record.memory = candidate.memory;
+                    self.journal.write(&Record::Structure(Box::new(record.clone())))?;
+                    self.say(Event::Built(&record));
+                }
+                match prepared {
+                    Ok(mut prepared) => self.configurations(subject, &mut candidate, &mut *prepared, &mut waiting)?,
+                    // It does not fit, whatever the size of the image.
+                    Err(Error::Device(message)) => {
+                        for (path, size) in waiting.drain(..) {
+                            self.unable(subject, selection, Some(&candidate), path, size, &message)?;
+                        }
+                        false
+                    }
+                    Err(error @ Error::DeviceLost(_)) => {
+                        if let Some((path, size)) = waiting.pop_front() {
+                            self.unable(subject, selection, Some(&candidate), path, size, &error.to_string())?;
+                        }
+                        true
+                    }
+                    Err(other) => return Err(other),
+                }
+            };
+            if !lost {
+                self.device = Some(device);
+            }
+        }
+        Ok(())
+    }
+
+    /// Measure what is waiting, one configuration after another; true if the device was lost on the way.
+    fn configurations(
+        &mut self,
+        subject: &mut Subject,
+        candidate: &mut Candidate,
+        prepared: &mut dyn Prepared,
+        waiting: &mut VecDeque<(usize, Size)>,
+    ) -> Result<bool> {
+        while let Some((path, size)) = waiting.pop_front() {
+            self.context.check_interrupt()?;
+            let (config, name) = (subject.paths[path].0, candidate.selection.name());
+            let Size { width, height } = size;
+            self.say(Event::Doing(format!("{} {name} {config:?} {width}x{height}", subject.record.name)));
+            match configuration::measure(&mut self.context, subject, candidate, prepared, path, size) {
+                Ok(record) => self.finish(record)?,
+                Err(error @ (Error::Device(_) | Error::DeviceLost(_))) => {
+                    let lost = matches!(error, Error::DeviceLost(_));
+                    self.unable(subject, candidate.selection, Some(candidate), path, size, &error.to_string())?;
+                    if lost {
+                        return Ok(true);
+                    }
+                }
+                Err(other) => return Err(other),
+            }
+        }
+        Ok(false)
+    }
+
+    /// An error row for a configuration that cannot run.
+    fn unable(
+        &mut self,
+        subject: &Subject,
+        selection: &Selection,
+        candidate: Option<&Candidate>,
+        path: usize,
+        size: Size,
+        message: &str,
+    ) -> Result<()> {
+        let mut record = configuration::blank(self.context.plan, subject, selection, path, size);
+        if let Some(candidate) = candidate {
+            configuration::describe(&mut record, candidate);
+        }
+        configuration::fail(&mut record, Failure::Device, message.to_owned());
+        self.finish(record)
+    }
+
+    /// Bring a record to the disk.
+    fn finish(&mut self, record: ConfigurationRecord) -> Result<()> {
+        self.journal.write(&Record::Configuration(Box::new(record.clone())))?;
+        self.say(Event::Finished(&record));
+        Ok(())
+    }
+
+    /// Open the device again after it was lost. It must be the same: a table of two devices would be worthless.
+    fn reopen(&mut self) -> Result<Opened> {
+        self.say(Event::Note("the device was lost and is opened again".into()));
+        let device = (self.open)().map_err(|e| Error::DeviceLost(format!("it cannot be opened again: {e}")))?;
+        let now = &device.backend.info().name;
+        if *now != self.device_name {
+            let before = &self.device_name;
+            return Err(Error::DeviceLost(format!("{before} did not come back, there is only {now}")));
+        }
+        Ok(device)
+    }
+}
+
+/// All configurations of a scene: which path, which size.
+fn configurations(plan: &Plan, subject: &Subject) -> Vec<(usize, Size)> {
+    let of_path = |path| plan.sizes.iter().map(move |&size| (path, size));
+    (0..subject.paths.len()).flat_map(of_path).collect()
+}
+
+/// Sizes: as allocated on the device (geometry, structure) where it was, in main memory otherwise.
+pub fn memory(built: &Built, scene: &Scene, allocated: Option<(u64, u64)>) -> Memory {
+    let geometry =
+        size_of_val(&scene.vertices[..]) + size_of_val(&scene.materials[..]) + size_of_val(&scene.lights[..]);
+    let (geometry_bytes, structure_bytes) = allocated.unwrap_or((geometry as u64, built.structure.structure_bytes()));
+    Memory { structure_bytes, geometry_bytes, thesis_bytes: built.structure.thesis_bytes(scene) }
+}

@@ -1,0 +1,145 @@
+//! Which device: flags that several commands share, and the choice that `auto` makes.
+
+use super::output;
+use crate::backend::{DeviceInfo, DeviceType};
+use crate::bench::sweep::Opened;
+use crate::cpu::CpuBackend;
+use crate::error::{Error, Result};
+use crate::gpu::{self, GpuBackend, Selector};
+use clap::{Args, ValueEnum};
+
+/// Which device, and how it is used.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Device")]
+pub struct DeviceArguments {
+    /// What computes: the best Vulkan adapter or else the CPU (auto), a Vulkan adapter, or the CPU twins of the kernels
+    #[arg(long, value_enum, default_value_t = BackendName::Auto)]
+    pub backend: BackendName,
+    /// Vulkan adapter by its number in `rtbench devices`, or by a part of its name
+    #[arg(long, value_name = "N|NAME")]
+    pub adapter: Option<String>,
+    /// Compile kernels with wgpu's bounds checks and loop bounds: slower, and every record says so
+    #[arg(long)]
+    pub checked: bool,
+    /// Threads that build structures and run the CPU twins; 0 for all
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub threads: usize,
+}
+
+/// What computes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum BackendName {
+    /// The best Vulkan adapter, or the CPU where there is none
+    Auto,
+    /// A Vulkan adapter
+    Vulkan,
+    /// The CPU twins of the kernels
+    Cpu,
+}
+
+/// Most threads that one may ask for.
+const MAX_THREADS: usize = 1024;
+
+impl DeviceArguments {
+    /// Refuses values that make no sense, before anything runs.
+    ///
+    /// # Errors
+    /// [`Error::Input`].
+    pub fn check(&self) -> Result<()> {
+        if self.threads > MAX_THREADS {
+            let problem = format!("{} threads", self.threads);
+            return Err(Error::argument("--threads", problem, format!("give 0 to {MAX_THREADS}")));
+        }
+        if self.backend == BackendName::Cpu && self.adapter.is_some() {
+            return Err(Error::argument("--adapter", "there are no adapters with --backend cpu", "leave one out"));
+        }
+        Ok(())
+    }
+
+    /// Opens the device and says why it is this one.
+    ///
+    /// # Errors
+    /// [`Error::Input`] if there is no such adapter, or the device's.
+    pub fn open(&self) -> Result<Opened> {
+        self.check()?;
+        if self.backend == BackendName::Cpu {
+            return Ok(self.cpu("asked for by --backend cpu".into()));
+        }
+        let adapters = gpu::adapters();
+        let names = || adapters.iter().map(|a| a.name.as_str()).collect::<Vec<_>>().join(", ");
+        let (index, reason) = match &self.adapter {
+            Some(wanted) => {
+                let index = find(&adapters, wanted).ok_or_else(|| {
+                    let problem = format!("no adapter {wanted:?}");
+                    let mend = if adapters.is_empty() { "there is none at all".into() } else { names() };
+                    Error::argument("--adapter", problem, mend)
+                })?;
+                (index, format!("asked for by --adapter {wanted}"))
+            }
+            None => match best(&adapters) {
+                Some(index) if adapters.len() == 1 => (index, "the only Vulkan adapter".into()),
+                Some(index) => (index, format!("the best of {} Vulkan adapters: {}", adapters.len(), names())),
+                None if self.backend == BackendName::Vulkan => {
+                    let mend = "./setup.sh installs a software one, --backend cpu needs none";
+                    return Err(Error::argument("--backend", "there is no Vulkan adapter", mend));
+                }
+                None => return Ok(self.cpu("there is no Vulkan adapter".into())),
+            },
+        };
+        match GpuBackend::open(&Selector::Index(index), gpu::Options { checked: self.checked }) {
+            Ok(backend) => Ok(Opened { backend: Box::new(backend), reason }),
+            // Only a free choice may fall back.
+            Err(error) if self.backend == BackendName::Auto && self.adapter.is_none() => {
+                Ok(self.cpu(format!("{} cannot be used: {error}", adapters[index].name)))
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    fn cpu(&self, reason: String) -> Opened {
+        Opened { backend: Box::new(CpuBackend::new(self.threads)), reason }
+    }
+}
+
+/// Tells the user which device it is, and why.
+pub fn announce(device: &Opened) {
+    let info = device.backend.info();
+    let driver = if info.driver.is_empty() { String::new() } else { format!(", {}", info.driver) };
+    output::note(&format!("device: {}{driver} ({}; {})", info.name, kind(info.device_type), device.reason));
+}
+
+/// A device type in words.
+pub fn kind(device_type: DeviceType) -> &'static str {
+    match device_type {
+        DeviceType::CpuTwin => "CPU twins",
+        DeviceType::SoftwareRasteriser => "software rasteriser",
+        DeviceType::IntegratedGpu => "integrated GPU",
+        DeviceType::DiscreteGpu => "discrete GPU",
+        DeviceType::VirtualGpu => "virtual GPU",
+        DeviceType::Other => "unknown kind",
+    }
+}
+
+/// The adapter by number or part of the name, whatever the case.
+fn find(adapters: &[DeviceInfo], wanted: &str) -> Option<usize> {
+    match wanted.parse::<usize>() {
+        Ok(index) if index < adapters.len() => Some(index),
+        _ => {
+            let wanted = wanted.to_lowercase();
+            adapters.iter().position(|a| a.name.to_lowercase().contains(&wanted))
+        }
+    }
+}
+
+/// The adapter that is most likely the fastest; of equals the first.
+fn best(adapters: &[DeviceInfo]) -> Option<usize> {
+    let rank = |a: &DeviceInfo| match a.device_type {
+        DeviceType::DiscreteGpu => 0,
+        DeviceType::IntegratedGpu => 1,
+        DeviceType::VirtualGpu => 2,
+        DeviceType::Other => 3,
+        DeviceType::SoftwareRasteriser => 4,
+        DeviceType::CpuTwin => 5,
+    };
+    (0..adapters.len()).min_by_key(|&index| rank(&adapters[index]))
+}

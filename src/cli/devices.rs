@@ -1,0 +1,58 @@
+//! `rtbench devices`: what can compute.
+
+use super::device::kind;
+use super::output;
+use crate::backend::{Backend, DeviceInfo};
+use crate::cpu::CpuBackend;
+use crate::error::Result;
+use crate::gpu;
+use clap::Args;
+
+/// List Vulkan adapters with features and limits, and the CPU
+///
+/// The number before an adapter is what --adapter takes; a part of its name works as well.
+#[derive(Args, Debug)]
+pub struct Arguments {}
+
+/// Runs the command.
+///
+/// # Errors
+/// Standard output's.
+pub fn run(_: &Arguments) -> Result<()> {
+    let adapters = gpu::adapters();
+    let mut text = String::new();
+    if adapters.is_empty() {
+        text += "no Vulkan adapter (./setup.sh installs a software one)\n\n";
+    }
+    for (index, adapter) in adapters.iter().enumerate() {
+        text += &describe(&format!("--backend vulkan --adapter {index}"), adapter);
+    }
+    text += &describe("--backend cpu", CpuBackend::new(0).info());
+    output::print(&text)
+}
+
+fn describe(flags: &str, device: &DeviceInfo) -> String {
+    let mut text = format!("{}\n", device.name);
+    let mut line = |name: &str, value: String| text += &format!("  {name:<12}{value}\n");
+    line("choose", flags.to_owned());
+    line("kind", kind(device.device_type).to_owned());
+    if !device.driver.is_empty() {
+        line("driver", device.driver.clone());
+    }
+    if let Some(threads) = device.threads {
+        line("threads", threads.to_string());
+    }
+    if device.backend != "cpu" {
+        let timestamps = match device.timestamp_period_ns {
+            Some(period) => format!("{period} ns per tick"),
+            None => "none: frame times are wall time".to_owned(),
+        };
+        line("timestamps", timestamps);
+        line("features", device.features.join(", "));
+        for (limit, value) in &device.limits {
+            line("limit", format!("{limit} = {value}"));
+        }
+    }
+    text.push('\n');
+    text
+}

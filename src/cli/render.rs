@@ -1,0 +1,158 @@
+//! `rtbench render`: one frame as a picture.
+
+use super::device::{self, DeviceArguments};
+use super::output;
+use crate::accel::Selection;
+use crate::backend::{Config, Counters, Prepared, Size};
+use crate::bench::plan;
+use crate::camera::{CameraPath, View};
+use crate::error::{Error, Result};
+use crate::results::picture;
+use crate::scene;
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+
+/// Write a PNG of one frame, or a heat map of what its rays cost
+#[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub struct Arguments {
+    /// Scene file, or built-in scene with parameters
+    #[arg(long, value_name = "FILE|NAME[:KEY=VALUE,..]")]
+    scene: String,
+    /// Camera path, instead of the scene's own
+    #[arg(long, value_name = "FILE|NAME")]
+    camera_path: Option<String>,
+    /// Structure with options
+    #[arg(long, value_name = "NAME[:KEY=VALUE,..]", default_value = "bvh-stack")]
+    structure: String,
+    /// Ray configuration
+    #[arg(long, value_name = "P|PS|PSR", default_value = "PSR")]
+    config: String,
+    /// Image size in pixels
+    #[arg(long, value_name = "N|WxH", default_value = "512")]
+    resolution: String,
+    /// Frame of the path, counted from 0
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    frame: usize,
+    /// Colour each pixel by what its rays cost, all ray types together
+    #[arg(long, value_enum)]
+    heatmap: Option<Heatmap>,
+    /// Value that gets the brightest colour, to compare heat maps [default: the largest of the image]
+    #[arg(long, value_name = "N", requires = "heatmap")]
+    scale_max: Option<u32>,
+    /// Picture
+    #[arg(long, short, value_name = "FILE", default_value = "render.png")]
+    out: PathBuf,
+    #[command(flatten)]
+    device: DeviceArguments,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  rtbench render --scene hall --resolution 1280x720 -o hall.png
+      the first frame of the scene's own camera path
+  rtbench render --scene bunny.ply --frame 100 --config PS
+      a quarter of the way around
+  rtbench render --scene stadium --structure grid --config P --heatmap steps -o grid.png
+      where a grid wastes its steps: dark is none, yellow the most of the image";
+
+/// What a heat map shows.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Heatmap {
+    /// Nodes or cells visited
+    Steps,
+    /// Ray/triangle tests
+    Tests,
+    /// Restarts of the kd-tree's traversal
+    Restarts,
+}
+
+impl Heatmap {
+    fn of(self, counters: &Counters) -> u32 {
+        match self {
+            Heatmap::Steps => counters.steps(),
+            Heatmap::Tests => counters.tests,
+            Heatmap::Restarts => counters.restarts,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Heatmap::Steps => "steps",
+            Heatmap::Tests => "triangle tests",
+            Heatmap::Restarts => "restarts",
+        }
+    }
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// Whatever keeps it from making the picture.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    let selection = Selection::parse(&arguments.structure)?;
+    let config = plan::parse_config(&arguments.config)?;
+    let size = plan::parse_size(&arguments.resolution)?;
+    arguments.device.check()?;
+    let scene = scene::load(&arguments.scene)?;
+    for warning in &scene.warnings {
+        output::note(&format!("{}: {warning}", scene.name));
+    }
+    let path = match &arguments.camera_path {
+        Some(name) => CameraPath::load(name)?,
+        None => CameraPath::for_scene(&scene, config),
+    };
+    let views = path.views(&scene, None)?;
+    let view = views.get(arguments.frame).ok_or_else(|| {
+        let problem = format!("the path {} has no frame {}", path.name(), arguments.frame);
+        Error::argument("--frame", problem, format!("give 0 to {}", views.len().saturating_sub(1)))
+    })?;
+    let device = arguments.device.open()?;
+    plan::check_size(size, device.backend.info())?;
+    device::announce(&device);
+    let built = selection.build(&scene, arguments.device.threads)?;
+    let mut prepared = device.backend.prepare(&scene, &built.structure, selection.traversal())?;
+    let rgba = match arguments.heatmap {
+        None => {
+            let pixels = prepared.image(config, view, size)?;
+            pixels.iter().flat_map(|pixel| pixel.rgba.to_le_bytes()).collect()
+        }
+        Some(heatmap) => paint(heatmap, arguments.scale_max, &mut *prepared, config, view, size)?,
+    };
+    picture::write_png(&arguments.out, size.width, size.height, &rgba)?;
+    output::print(&format!(
+        "{}: {} {} {config:?}, {}x{}, frame {} of {} on {}\n",
+        arguments.out.display(),
+        scene.name,
+        selection.name(),
+        size.width,
+        size.height,
+        arguments.frame,
+        views.len(),
+        path.name(),
+    ))
+}
+
+/// Renders with the counting kernel, colours the counts and prints what the colours mean.
+fn paint(
+    heatmap: Heatmap,
+    scale_max: Option<u32>,
+    prepared: &mut dyn Prepared,
+    config: Config,
+    view: &View,
+    size: Size,
+) -> Result<Vec<u8>> {
+    let mut values: Vec<u32> = Vec::with_capacity(size.pixels());
+    prepared.counted(config, view, size, &mut |_, pixels| {
+        values.extend(pixels.iter().map(|p| p.counters.iter().map(|c| heatmap.of(c)).sum::<u32>()));
+    })?;
+    let min = values.iter().copied().min().unwrap_or(0);
+    let max = values.iter().copied().max().unwrap_or(0);
+    let mean = values.iter().map(|&v| f64::from(v)).sum::<f64>() / values.len().max(1) as f64;
+    let top = scale_max.unwrap_or(max).max(1);
+    output::print(&format!(
+        "{} per pixel: min {min}, mean {mean:.2}, max {max}; colours from dark blue (0) by way of red to yellow ({top})\n",
+        heatmap.name(),
+    ))?;
+    Ok(values.iter().flat_map(|&value| picture::heat(value as f32 / top as f32)).collect())
+}

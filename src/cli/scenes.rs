@@ -1,0 +1,73 @@
+//! `rtbench scenes`: what can be traced.
+
+use super::output;
+use crate::backend::Config;
+use crate::camera::CameraPath;
+use crate::error::Result;
+use crate::scene;
+use clap::Subcommand;
+
+/// List the built-in scenes and camera paths, or describe a scene
+#[derive(Subcommand, Debug)]
+#[command(after_help = EXAMPLES)]
+pub enum Command {
+    /// List the built-in scenes with their parameters, and the camera paths
+    List,
+    /// Load a scene and describe it
+    Info {
+        /// Scene file, or built-in scene with parameters
+        #[arg(value_name = "FILE|NAME[:KEY=VALUE,..]")]
+        scene: String,
+    },
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  rtbench scenes list
+  rtbench scenes info bunny.ply
+  rtbench scenes info hall:triangles=200000";
+
+/// Runs the command.
+///
+/// # Errors
+/// The scene's.
+pub fn run(command: &Command) -> Result<()> {
+    match command {
+        Command::List => list(),
+        Command::Info { scene } => info(scene),
+    }
+}
+
+fn list() -> Result<()> {
+    let mut text = String::from("Built-in scenes, as NAME or NAME:KEY=VALUE,...\n");
+    for scene in scene::list() {
+        text += &format!("\n  {}\n      {}\n      {}\n", scene.name, scene.summary, scene.parameters);
+    }
+    text += &format!("\nCamera paths: {}\n", CameraPath::names().join(", "));
+    output::print(&text)
+}
+
+fn info(what: &str) -> Result<()> {
+    let scene = scene::load(what)?;
+    let bounds = scene.bounds();
+    let extent = bounds.extent();
+    let mut text = format!("{}\n", scene.name);
+    let mut line = |name: &str, value: String| text += &format!("  {name:<22}{value}\n");
+    line("triangles", scene.triangles.len().to_string());
+    line("without area", scene.degenerate_triangles.to_string());
+    line("vertices", scene.vertices.len().to_string());
+    line("materials", scene.materials.len().to_string());
+    line("mirroring surface", format!("{:.1} %", 100.0 * scene.mirror_share()));
+    line("lights", scene.lights.len().to_string());
+    line("smallest corner", bounds.min.to_string());
+    line("largest corner", bounds.max.to_string());
+    line("extent", format!("{extent}, diagonal {}", bounds.diagonal()));
+    for config in Config::ALL {
+        line(&format!("camera path for {config:?}"), CameraPath::for_scene(&scene, config).name().to_string());
+    }
+    line("content hash", scene.content_hash());
+    for warning in &scene.warnings {
+        line("warning", warning.clone());
+    }
+    output::print(&text)
+}

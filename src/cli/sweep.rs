@@ -1,0 +1,170 @@
+//! `rtbench sweep`: the main job.
+
+use super::device::{self, DeviceArguments};
+use super::output;
+use super::progress::Progress;
+use crate::bench::environment;
+use crate::bench::plan::{Plan, Request};
+use crate::bench::sweep::{self, Job};
+use crate::error::{Error, Result};
+use crate::results::{files, table};
+use clap::Args;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Measure every structure x ray configuration x resolution on scenes
+///
+/// Each configuration is verified against a reference, then counted, then timed; its row is on the disk before the next
+/// begins. What disagrees becomes an error row with a difference image and is not timed. Without further words it runs
+/// the preset `quick`; every flag overrides what the preset says.
+#[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub struct Arguments {
+    /// What the flags below begin with: quick, thesis, or a TOML file like presets/quick.toml
+    #[arg(long, default_value = "quick", value_name = "NAME|FILE")]
+    preset: String,
+    /// Scene file, or built-in scene with parameters; may be repeated
+    #[arg(long, value_name = "FILE|NAME[:KEY=VALUE,..]")]
+    scene: Vec<String>,
+    /// Folder in which presets look for scene files [default: the variable RTBENCH_SCENES]
+    #[arg(long, value_name = "FOLDER")]
+    scenes_dir: Option<PathBuf>,
+    /// Camera path for every scene and configuration, instead of each one's own
+    #[arg(long, value_name = "FILE|NAME")]
+    camera_path: Option<String>,
+    /// Structures with options, as in `rtbench structures`; comma list, may be repeated
+    #[arg(long, value_name = "NAME[:KEY=VALUE,..]")]
+    structure: Vec<String>,
+    /// Ray configurations: P primary rays, PS with shadow rays, PSR with reflected rays; comma list
+    #[arg(long, value_name = "P|PS|PSR")]
+    config: Vec<String>,
+    /// Image sizes in pixels; comma list
+    #[arg(long, value_name = "N|WxH")]
+    resolution: Vec<String>,
+    /// Thin each camera path evenly to this many frames
+    #[arg(long, value_name = "N")]
+    frames: Option<usize>,
+    /// Timed passes over each path; a frame's time is the median over them
+    #[arg(long, value_name = "N")]
+    passes: Option<usize>,
+    /// Untimed frames before the first pass
+    #[arg(long, value_name = "FRAMES")]
+    warmup: Option<usize>,
+    #[command(flatten)]
+    device: DeviceArguments,
+    /// Folder for the results, new or empty [default: results/TIME-DEVICE]
+    #[arg(long, value_name = "FOLDER")]
+    out: Option<PathBuf>,
+    /// No progress, no table: only errors
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  rtbench sweep
+      the preset quick: built-in scenes, all structures, a few minutes
+  rtbench sweep --scene bunny.ply --structure grid,kdtree,bvh --config P,PS --resolution 512,1024
+      a scene of your own
+  rtbench sweep --scene hall --structure grid:x=64,grid:x=128 --config PSR --frames 20
+      the same structure with different options
+  rtbench sweep --preset thesis --scenes-dir ~/scenes --adapter nvidia
+      the thesis's method, on a chosen GPU
+  rtbench sweep --backend cpu --out results/twins
+      without any GPU or driver
+
+In the folder of results: journal.jsonl (everything, one record per line), summary.csv, structures.csv, run.json.
+Ctrl-C ends a sweep in order: what was measured is kept.";
+
+/// Runs the command.
+///
+/// # Errors
+/// What could not run; wrong answers are the exit code 1.
+pub fn run(arguments: &Arguments) -> Result<ExitCode> {
+    let plan = Plan::new(&Request {
+        preset: arguments.preset.clone(),
+        scenes: arguments.scene.clone(),
+        camera_path: arguments.camera_path.clone(),
+        structures: arguments.structure.clone(),
+        configs: arguments.config.clone(),
+        resolutions: arguments.resolution.clone(),
+        frames: arguments.frames,
+        passes: arguments.passes,
+        warmup_frames: arguments.warmup,
+        scenes_folder: arguments.scenes_dir.clone().or_else(|| std::env::var_os("RTBENCH_SCENES").map(PathBuf::from)),
+    })?;
+    for absent in &plan.skipped {
+        output::note(&format!("left out: {absent}"));
+    }
+    arguments.device.check()?;
+    if let Some(out) = &arguments.out {
+        files::create_run_folder(out)?;
+    }
+    let work: u64 = plan.survey()?.iter().sum();
+    let device = arguments.device.open()?;
+    plan.check_device(device.backend.info())?;
+    if !arguments.quiet {
+        device::announce(&device);
+    }
+    let out = match &arguments.out {
+        Some(out) => out.clone(),
+        None => default_folder(&device.backend.info().name),
+    };
+
+    let stop = ctrl_c()?;
+    let interrupted = || stop.load(Ordering::Relaxed);
+    let mut progress = Progress::new(plan.configurations(), work, arguments.quiet);
+    let outcome = sweep::run(Job {
+        plan: &plan,
+        out: &out,
+        threads: arguments.device.threads,
+        arguments: std::env::args_os().map(|a| a.to_string_lossy().into_owned()).collect(),
+        device,
+        open: &|| arguments.device.open(),
+        interrupted: &interrupted,
+        watch: &mut |event| progress.event(event),
+    });
+    progress.end();
+    let outcome = outcome.inspect_err(|_| tell_where(&out))?;
+
+    if !arguments.quiet {
+        output::print(&table::run(&outcome.run))?;
+        output::print(&format!("results: {}\n", out.display()))?;
+    }
+    let (rows, bad) = (outcome.run.configurations.len(), outcome.disagreeing + outcome.failed);
+    if bad == 0 {
+        return Ok(ExitCode::SUCCESS);
+    }
+    let first = outcome.run.configurations.iter().find(|row| !row.message.is_empty());
+    let first = first.map(|row| format!("{}: {}", table::label(row), row.message)).unwrap_or_default();
+    let verb = if outcome.disagreeing > 0 { "disagreed with the reference or could not run" } else { "could not run" };
+    output::complain(&format!("{bad} of {rows} configurations {verb}; first {first}"));
+    Ok(ExitCode::from(if outcome.disagreeing > 0 { 1 } else { 2 }))
+}
+
+/// Tells where the rows are that were measured before a sweep broke off.
+fn tell_where(out: &Path) {
+    if out.join(crate::results::journal::FILE_NAME).is_file() {
+        output::note(&format!("what was measured is in {}", out.display()));
+    }
+}
+
+/// `results/TIME-DEVICE`.
+fn default_folder(device: &str) -> PathBuf {
+    Path::new("results").join(format!("{}-{}", environment::now_for_file_name(), files::slug(device)))
+}
+
+/// A flag that Ctrl-C sets. The second Ctrl-C ends the program at once: the journal is on the disk anyway.
+fn ctrl_c() -> Result<Arc<AtomicBool>> {
+    let flag = Arc::new(AtomicBool::new(false));
+    let set = Arc::clone(&flag);
+    ctrlc::set_handler(move || {
+        if set.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+    })
+    .map_err(|e| Error::Device(format!("cannot listen for Ctrl-C: {e}")))?;
+    Ok(flag)
+}

@@ -1,0 +1,66 @@
+//! `rtbench trace`: given rays, so that rtbench can be held against another engine.
+
+use super::device::{self, DeviceArguments};
+use super::output;
+use crate::accel::Selection;
+use crate::error::Result;
+use crate::math::MISS;
+use crate::results::rays;
+use crate::scene;
+use clap::Args;
+use std::path::PathBuf;
+
+/// Trace rays from a CSV file and write their hits
+///
+/// The file's first line names its columns: origin_x, origin_y, origin_z, direction_x, direction_y, direction_z, in any
+/// order; others are ignored. The result has a line t,triangle for each ray: the distance in units of the direction's
+/// length and the triangle's index in the file, polygons counted as fans; empty and -1 for a miss. With --any-hit it only
+/// says whether something is hit: 0,0 or a miss.
+#[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub struct Arguments {
+    /// Scene file, or built-in scene with parameters
+    #[arg(long, value_name = "FILE|NAME[:KEY=VALUE,..]")]
+    scene: String,
+    /// CSV file of rays
+    #[arg(long, value_name = "FILE")]
+    rays: PathBuf,
+    /// Structure with options
+    #[arg(long, value_name = "NAME[:KEY=VALUE,..]", default_value = "bvh-stack")]
+    structure: String,
+    /// Only whether anything is hit, as a shadow ray asks
+    #[arg(long)]
+    any_hit: bool,
+    /// CSV file of hits
+    #[arg(long, short, value_name = "FILE")]
+    out: PathBuf,
+    #[command(flatten)]
+    device: DeviceArguments,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  rtbench trace --scene bunny.ply --rays rays.csv --structure kdtree --backend cpu -o hits.csv
+  rtbench trace --scene hall --rays rays.csv --any-hit -o shadows.csv";
+
+/// Runs the command.
+///
+/// # Errors
+/// Whatever keeps it from tracing all rays.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    let selection = Selection::parse(&arguments.structure)?;
+    arguments.device.check()?;
+    let rays = rays::read(&arguments.rays)?;
+    let scene = scene::load(&arguments.scene)?;
+    for warning in &scene.warnings {
+        output::note(&format!("{}: {warning}", scene.name));
+    }
+    let device = arguments.device.open()?;
+    device::announce(&device);
+    let built = selection.build(&scene, arguments.device.threads)?;
+    let mut prepared = device.backend.prepare(&scene, &built.structure, selection.traversal())?;
+    let hits = prepared.trace(&rays, arguments.any_hit)?;
+    rays::write(&arguments.out, &hits)?;
+    let found = hits.iter().filter(|hit| hit.triangle != MISS).count();
+    output::print(&format!("{}: {found} of {} rays hit\n", arguments.out.display(), hits.len()))
+}
