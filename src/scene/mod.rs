@@ -39,7 +39,14 @@ pub struct Material {
 impl Material {
     /// A matt material of one colour, with a little ambient light.
     pub fn matt(diffuse: Vec3) -> Material {
-        Material { ambient: diffuse * 0.1, reflectivity: 0.0, diffuse, exponent: 1.0, specular: Vec3::ZERO, pad: 0.0 }
+        Material {
+            ambient: diffuse * 0.1,
+            reflectivity: 0.0,
+            diffuse,
+            exponent: 1.0,
+            specular: Vec3::ZERO,
+            pad: 0.0,
+        }
     }
 
     /// With a highlight and a mirror's share.
@@ -101,66 +108,13 @@ impl Scene {
 
     /// The box around all triangles.
     pub fn bounds(&self) -> Aabb {
-        Aabb::from_points(self.triangles.iter().flat_map(|t| t.vertices).map(|v| self.vertices[v as usize].position))
+        Aabb::from_points(
+            self.triangles.iter().flat_map(|t| t.vertices).map(|v| self.vertices[v as usize].position),
+        )
     }
 }
 
 /// Loads a scene: a file by its extension, or a procedural scene by `name[:key=value,...]`.
-pub fn load(what: &str) -> Result<Scene> {
-    let (name, options) = what.split_once(':').unwrap_or((what, ""));
-    if !["scan", "stadium", "hall"].contains(&name) {
-        return Err(crate::Error::argument("--scene", format!("no scene {what}"), "rtbench scenes list"));
-    }
-    let n: u32 = options.strip_prefix("triangles=").map_or(Ok(200), str::parse).unwrap_or(200);
-    let rings = ((n / 2) as f32).sqrt() as u32;
-    let mut s = Scene {
-        name: what.into(),
-        materials: vec![Material::matt(Vec3::splat(0.7))],
-        lights: vec![Light::new(Vec3::splat(5.0), Vec3::ONE)],
-        ..Scene::default()
-    };
-    for i in 0..=rings {
-        for j in 0..=rings {
-            let (a, b) = (i as f32 / rings as f32 * 3.1415, j as f32 / rings as f32 * 6.2831);
-            let p = Vec3::new(a.sin() * b.cos(), a.cos(), a.sin() * b.sin());
-            s.vertices.push(Vertex::new(p, p));
-        }
-    }
-    for i in 0..rings {
-        for j in 0..rings {
-            let k = i * (rings + 1) + j;
-            s.triangles.push(Triangle { vertices: [k, k + 1, k + rings + 1], material: 0 });
-            s.triangles.push(Triangle { vertices: [k + 1, k + rings + 2, k + rings + 1], material: 0 });
-        }
-    }
-    Ok(s)
-}
-
-// ---- stub ----
-/// A built-in scene.
-pub struct SceneInfo {
-    /// Name
-    pub name: &'static str,
-    /// Summary
-    pub summary: &'static str,
-    /// Parameters
-    pub parameters: &'static str,
-}
-/// stub
-pub fn list() -> Vec<SceneInfo> {
-    vec![SceneInfo { name: "scan", summary: "an object", parameters: "triangles" }]
-}
-impl Scene {
-    /// stub
-    pub fn content_hash(&self) -> String {
-        blake3::hash(bytemuck::cast_slice(&self.vertices)).to_hex().to_string()
-    }
-    /// stub
-    pub fn mirror_share(&self) -> f32 {
-        0.0
-    }
-    /// stub
-    pub fn check(&self) -> Result<()> {
-        Ok(())
-    }
+pub fn load(_what: &str) -> Result<Scene> {
+    unimplemented!()
 }
