@@ -6,6 +6,7 @@
 pub mod bvh;
 pub mod grid;
 pub mod kdtree;
+pub mod octants;
 
 use crate::math::Aabb;
 use bytemuck::{Pod, Zeroable};
