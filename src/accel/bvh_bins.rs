@@ -11,6 +11,24 @@ use rayon::prelude::*;
 /// Most bins per axis.
 pub const MAX_BINS: usize = 32;
 
+/// A triangle to be sorted into the tree: 48 bytes.
+///
+/// The centroid is the mean of the three corners and not the centre of the box: that is what explains the published
+/// node counts (bunny 43,500 against 42,454 of 45,814 nodes), though box centres give trees that are 2 % better.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct Item {
+    /// Box and index.
+    pub prim: Prim,
+    /// Three times the centroid; the fourth lane is 1 (see [`Prim`]).
+    pub centroid3: Vec4,
+}
+
+impl Item {
+    /// Stands where no triangle has been put yet.
+    pub const NONE: Item = Item { prim: Prim::NONE, centroid3: Vec4::ONE };
+}
+
 /// A box in two rows whose fourth lanes mean nothing.
 #[derive(Clone, Copy, Debug)]
 pub struct Rows {
@@ -57,7 +75,7 @@ pub struct Binning {
 }
 
 impl Binning {
-    /// Spread `bins` bins over the bounds of the (doubled) centroids.
+    /// Spread `bins` bins over the bounds of the (tripled) centroids.
     pub fn new(centroids: &Rows, bins: usize) -> Binning {
         let extent = centroids.max - centroids.min;
         // Slightly less than `bins`, so that the largest centroid falls into the last bin and not behind it.
@@ -70,8 +88,8 @@ impl Binning {
 
     /// The bin on every axis (fourth lane: nothing).
     #[inline(always)]
-    pub fn of(&self, prim: &Prim) -> [u32; 4] {
-        let x = (prim.centroid2() - self.origin) * self.scale + Vec4::splat(32_768.0);
+    pub fn of(&self, item: &Item) -> [u32; 4] {
+        let x = (item.centroid3 - self.origin) * self.scale + Vec4::splat(32_768.0);
         x.to_array().map(|f| ((f.to_bits() >> 8) & 0xff).min(self.last))
     }
 }
@@ -95,12 +113,12 @@ impl Bins {
         }
     }
 
-    fn add(&mut self, prims: &[Prim], binning: &Binning) {
-        for prim in prims {
-            let bins = binning.of(prim);
+    fn add(&mut self, items: &[Item], binning: &Binning) {
+        for item in items {
+            let bins = binning.of(item);
             for axis in 0..3 {
                 let bin = bins[axis] as usize % MAX_BINS;
-                self.boxes[axis][bin].grow(prim.min, prim.max);
+                self.boxes[axis][bin].grow(item.prim.min, item.prim.max);
                 self.counts[axis][bin] += 1;
             }
         }
@@ -145,19 +163,19 @@ impl Splitter {
     }
 
     /// The cheapest border between bins, `None` if all centroids share one bin on every axis.
-    pub fn find(&mut self, prims: &[Prim], binning: &Binning) -> Option<Split> {
+    pub fn find(&mut self, items: &[Item], binning: &Binning) -> Option<Split> {
         let bins = binning.last as usize + 1;
         self.bins.clear(bins);
-        if prims.len() > 4 * CHUNK {
-            let add = |chunk: &[Prim]| {
+        if items.len() > 4 * CHUNK {
+            let add = |chunk: &[Item]| {
                 let mut part = Bins::new();
                 part.add(chunk, binning);
                 part
             };
-            let parts: Vec<Bins> = prims.par_chunks(CHUNK).map(add).collect();
+            let parts: Vec<Bins> = items.par_chunks(CHUNK).map(add).collect();
             parts.iter().for_each(|part| self.bins.merge(part));
         } else {
-            self.bins.add(prims, binning);
+            self.bins.add(items, binning);
         }
         let mut best = (f32::INFINITY, 0, 0);
         for axis in 0..3 {

@@ -1,12 +1,12 @@
 //! BVH builder: top down, SAH over binned centroids, until at most `max_leaf` triangles are left (SPEC section 4).
 
 use super::bvh::{Bvh, BvhNode, MAX_DEPTH};
-use super::bvh_bins::{Binning, Rows, Splitter};
-use super::prims::{self, Prim};
+use super::bvh_bins::{Binning, Item, Rows, Splitter};
+use super::prims::{self, CHUNK, Prim};
 use crate::error::Result;
 use crate::math::Aabb;
 use crate::scene::Scene;
-use glam::Vec4;
+use rayon::prelude::*;
 
 /// What can be set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,18 +30,27 @@ const TASK: usize = 4096;
 
 /// Builds a BVH over all triangles that can be hit, on the threads of the current rayon pool.
 pub fn build(scene: &Scene, config: &Config) -> Result<Bvh> {
-    let mut prims = prims::prims(scene)?;
+    let prims = prims::prims(scene)?;
     let bounds = prims::bounds(&prims);
     if prims.is_empty() {
         return Ok(Bvh { bounds, nodes: vec![BvhNode::NONE; 2], records: Vec::new(), depth: 0 });
     }
+    let item = |prim: &Prim| {
+        let [a, b, c] = scene.corners(prim.triangle());
+        Item { prim: *prim, centroid3: (a + b + c).extend(1.0) }
+    };
+    let mut items: Vec<Item> = prims.par_iter().with_min_len(CHUNK).map(item).collect();
     let builder = Builder { config: *config, unit: unit(&bounds) };
-    let mut scratch = vec![Prim::NONE; prims.len()];
+    let mut scratch = vec![Item::NONE; prims.len()];
     let rows = Rows { min: bounds.min.extend(0.0), max: bounds.max.extend(0.0) };
-    let part = builder.grow(&mut prims, &mut scratch, 0, rows, 0);
+    let part = builder.grow(&mut items, &mut scratch, 0, rows, 0);
     drop(scratch);
     let depth = part.depth;
-    let records = prims::records(scene, &prims);
+    let records = items
+        .par_iter()
+        .with_min_len(CHUNK)
+        .map(|item| prims::record(scene, item.prim.triangle()))
+        .collect();
     Ok(Bvh { bounds, nodes: part.into_nodes(), records, depth })
 }
 
@@ -78,16 +87,16 @@ struct Sides {
 }
 
 impl Builder {
-    /// Builds the subtree of `prims`, whose records will begin at `first`; sides of large nodes in parallel.
-    fn grow(&self, prims: &mut [Prim], scratch: &mut [Prim], first: u32, bounds: Rows, depth: u32) -> Part {
+    /// Builds the subtree of `items`, whose records will begin at `first`; sides of large nodes in parallel.
+    fn grow(&self, items: &mut [Item], scratch: &mut [Item], first: u32, bounds: Rows, depth: u32) -> Part {
         let mut splitter = Splitter::new(self.unit);
-        if prims.len() <= TASK {
-            let mut nodes = Vec::with_capacity(prims.len());
-            let (root, depth) = self.subtree(prims, scratch, first, bounds, depth, &mut splitter, &mut nodes);
+        if items.len() <= TASK {
+            let mut nodes = Vec::with_capacity(items.len());
+            let (root, depth) = self.subtree(items, scratch, first, bounds, depth, &mut splitter, &mut nodes);
             return Part { root, below: Below::Nodes(nodes), depth };
         }
-        let sides = self.divide(prims, scratch, depth, &mut splitter);
-        let (left, right) = prims.split_at_mut(sides.mid);
+        let sides = self.divide(items, scratch, depth, &mut splitter);
+        let (left, right) = items.split_at_mut(sides.mid);
         let (left_scratch, right_scratch) = scratch.split_at_mut(sides.mid);
         let (a, b) = rayon::join(
             || self.grow(left, left_scratch, first, sides.left, depth + 1),
@@ -101,21 +110,21 @@ impl Builder {
     #[allow(clippy::too_many_arguments)]
     fn subtree(
         &self,
-        prims: &mut [Prim],
-        scratch: &mut [Prim],
+        items: &mut [Item],
+        scratch: &mut [Item],
         first: u32,
         bounds: Rows,
         depth: u32,
         splitter: &mut Splitter,
         nodes: &mut Vec<BvhNode>,
     ) -> (BvhNode, u32) {
-        if prims.len() <= self.config.max_leaf {
-            return (BvhNode::leaf(&bounds, first, prims.len() as u32), 0);
+        if items.len() <= self.config.max_leaf {
+            return (BvhNode::leaf(&bounds, first, items.len() as u32), 0);
         }
-        let sides = self.divide(prims, scratch, depth, splitter);
+        let sides = self.divide(items, scratch, depth, splitter);
         let pair = nodes.len();
         nodes.extend([BvhNode::NONE; 2]);
-        let (left, right) = prims.split_at_mut(sides.mid);
+        let (left, right) = items.split_at_mut(sides.mid);
         let (left_scratch, right_scratch) = scratch.split_at_mut(sides.mid);
         let (a, a_depth) = self.subtree(left, left_scratch, first, sides.left, depth + 1, splitter, nodes);
         let mid = first + sides.mid as u32;
@@ -125,21 +134,21 @@ impl Builder {
         (BvhNode::inner(&bounds, pair as u32), 1 + a_depth.max(b_depth))
     }
 
-    /// Reorders `prims` into two non-empty sides.
-    fn divide(&self, prims: &mut [Prim], scratch: &mut [Prim], depth: u32, splitter: &mut Splitter) -> Sides {
+    /// Reorders `items` into two non-empty sides.
+    fn divide(&self, items: &mut [Item], scratch: &mut [Item], depth: u32, splitter: &mut Splitter) -> Sides {
         // Halving from here on would just keep within the greatest depth: no more adventures.
-        let halvings = usize::BITS - prims.len().leading_zeros();
+        let halvings = usize::BITS - items.len().leading_zeros();
         if depth + halvings >= MAX_DEPTH {
-            return halve(prims);
+            return halve(items);
         }
         let mut centroids = Rows::EMPTY;
-        for prim in prims.iter() {
-            let c = prim.centroid2();
+        for item in items.iter() {
+            let c = item.centroid3;
             centroids.grow(c, c);
         }
         let binning = Binning::new(&centroids, self.config.bins);
-        let Some(split) = splitter.find(prims, &binning) else { return halve(prims) };
-        let mid = partition(prims, scratch, |p| binning.of(p)[split.axis] <= split.bin);
+        let Some(split) = splitter.find(items, &binning) else { return halve(items) };
+        let mid = partition(items, scratch, |p| binning.of(p)[split.axis] <= split.bin);
         debug_assert_eq!(mid, split.left_count);
         Sides { mid, left: split.left, right: split.right }
     }
@@ -147,29 +156,29 @@ impl Builder {
 
 /// Stable partition without a branch per element: every element is written to both sides, and only one side advances.
 #[inline(always)]
-fn partition(prims: &mut [Prim], scratch: &mut [Prim], goes_left: impl Fn(&Prim) -> bool) -> usize {
+fn partition(items: &mut [Item], scratch: &mut [Item], goes_left: impl Fn(&Item) -> bool) -> usize {
     let (mut left, mut right) = (0, 0);
-    for i in 0..prims.len() {
-        let prim = prims[i];
-        let flag = goes_left(&prim) as usize;
-        prims[left] = prim;
-        scratch[right] = prim;
+    for i in 0..items.len() {
+        let item = items[i];
+        let flag = goes_left(&item) as usize;
+        items[left] = item;
+        scratch[right] = item;
         left += flag;
         right += 1 - flag;
     }
-    prims[left..].copy_from_slice(&scratch[..right]);
+    items[left..].copy_from_slice(&scratch[..right]);
     left
 }
 
 /// Where the centroids say nothing: half of them each, in the order in which they stand.
-fn halve(prims: &[Prim]) -> Sides {
-    let mid = prims.len() / 2;
-    let around = |prims: &[Prim]| {
+fn halve(items: &[Item]) -> Sides {
+    let mid = items.len() / 2;
+    let around = |items: &[Item]| {
         let mut rows = Rows::EMPTY;
-        prims.iter().for_each(|p| rows.grow(p.min, p.max));
+        items.iter().for_each(|p| rows.grow(p.prim.min, p.prim.max));
         rows
     };
-    Sides { mid, left: around(&prims[..mid]), right: around(&prims[mid..]) }
+    Sides { mid, left: around(&items[..mid]), right: around(&items[mid..]) }
 }
 
 impl Part {
@@ -225,5 +234,3 @@ impl BvhNode {
     }
 }
 
-#[allow(unused)]
-fn unused(_: Vec4) {}

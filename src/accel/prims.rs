@@ -42,12 +42,6 @@ impl Prim {
         self.max.w.to_bits() ^ TAG
     }
 
-    /// Twice the centre of the box.
-    #[inline(always)]
-    pub fn centroid2(&self) -> Vec4 {
-        self.min + self.max
-    }
-
     /// The box alone.
     pub fn aabb(&self) -> Aabb {
         Aabb { min: self.min.truncate(), max: self.max.truncate() }
