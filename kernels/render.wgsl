@@ -42,15 +42,21 @@ fn primary_ray(column: u32, row: u32) -> Ray {
     return ray_along(frame.origin, unit(frame.corner + frame.right * x + frame.down * y));
 }
 
-@compute @workgroup_size(8, 8)
+// Consecutive invocations lie in squares (Morton order), so that those that share an instruction stream, be it 8, 16 or
+// 32 of them, have neighbouring rays in both directions.
+fn place_in_group(i: u32) -> vec2<u32> {
+    return vec2<u32>((i & 1u) | ((i >> 1u) & 2u) | ((i >> 2u) & 4u), ((i >> 1u) & 1u) | ((i >> 2u) & 2u) | ((i >> 3u) & 4u));
+}
+
+@compute @workgroup_size(64)
 fn main(
     @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(local_invocation_id) local: vec3<u32>,
     @builtin(local_invocation_index) local_index: u32,
 ) {
     lane = local_index;
-    let column = group.x * 8u + local.x;
-    let band_row = group.y * 8u + local.y;
+    let place = place_in_group(local_index);
+    let column = group.x * 8u + place.x;
+    let band_row = group.y * 8u + place.y;
     let inside = column < frame.width && band_row < frame.rows;
 
     var ray = primary_ray(column, frame.first_row + band_row);

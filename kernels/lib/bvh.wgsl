@@ -12,7 +12,7 @@ struct Node {
 // A node in one word, so that a stack entry needs no read when it is popped: the left child of an inner node, or with
 // the top bit set four bits of count and 27 bits of first record.
 const LEAF: u32 = 0x80000000u;
-const EMPTY: u32 = 0u; // no inner node has its children at 0: an empty tree's root
+const EMPTY: u32 = LEAF; // a leaf without records: the bottom of every stack, and an empty tree's root
 
 fn node_reference(first: u32, count: u32) -> u32 {
     return select(first, LEAF | (count << 27u) | first, count > 0u);
@@ -28,6 +28,11 @@ fn leaf_first(node: u32) -> u32 {
 
 fn leaf_count(node: u32) -> u32 {
     return (node >> 27u) & 15u;
+}
+
+fn root_reference() -> u32 {
+    let root = nodes[0];
+    return select(node_reference(root.first, root.count), EMPTY, root.first == 0u && root.count == 0u);
 }
 
 fn wanted(interval: vec2<f32>, t: f32) -> bool {

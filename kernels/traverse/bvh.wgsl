@@ -65,8 +65,7 @@ fn pop() {
 fn start_packet() -> u32 {
     if (lane == 0u) {
         stack_depth = 0u;
-        let root = nodes[0];
-        next = vec2<u32>(node_reference(root.first, root.count), 0u);
+        next = vec2<u32>(root_reference(), 0u);
     }
     return workgroupUniformLoad(&next).x;
 }

@@ -71,7 +71,7 @@ impl Backend for CpuBackend {
         traversal: Traversal,
     ) -> Result<Box<dyn Prepared + 'a>> {
         let triangles = |records| Triangles { vertices: &scene.vertices, records };
-        let check_depth = |depth: u32| match (depth as usize) < STACK_SIZE {
+        let check_depth = |depth: u32| match (depth as usize) + 1 < STACK_SIZE {
             true => Ok(()),
             false => {
                 Err(Error::Device(format!("the tree is {depth} levels deep, the twins' stack holds {STACK_SIZE}")))

@@ -4,7 +4,7 @@
 use super::count::Count;
 use super::shade::{Surface, phong, reflected_ray, rgba8, surface_at, unit};
 use super::traverse::{GROUP, Lanes, Traverse, Triangles, bits};
-use crate::backend::{Config, CountedPixel, GROUP_SIDE, Pixel, Size};
+use crate::backend::{Config, CountedPixel, Pixel, Size};
 use crate::camera::{PixelGrid, View};
 use crate::math::{MISS, Ray, T_MAX};
 use crate::scene::{Light, Scene};
@@ -13,6 +13,11 @@ use glam::Vec3A;
 const PRIMARY: usize = 0;
 const SHADOW: usize = 1;
 const REFLECTED: usize = 2;
+
+/// Place of a lane in its group of pixels: Morton order.
+fn place_in_group(i: u32) -> (u32, u32) {
+    ((i & 1) | (i >> 1 & 2) | (i >> 2 & 4), (i >> 1 & 1) | (i >> 2 & 2) | (i >> 3 & 4))
+}
 
 /// One frame: the twin of the kernel's `Frame` and of its constants SHADOWS and BOUNCES.
 pub struct Frame<'a> {
@@ -59,7 +64,10 @@ impl<'a> Frame<'a> {
         (column, row): (u32, u32),
         mut store: impl FnMut(u32, u32, CountedPixel),
     ) {
-        let place = |lane: usize| (column + lane as u32 % GROUP_SIDE, row + lane as u32 / GROUP_SIDE);
+        let place = |lane: usize| {
+            let (x, y) = place_in_group(lane as u32);
+            (column + x, row + y)
+        };
         let inside = (0..GROUP)
             .filter(|&lane| place(lane).0 < self.size.width && place(lane).1 < self.size.height)
             .fold(0u64, |set, lane| set | 1 << lane);

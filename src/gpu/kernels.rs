@@ -58,9 +58,10 @@ pub struct Kernel {
     pub stack_size: u32,
 }
 
-/// Stack entries for a tree of `depth` levels: a multiple of eight, so that few different kernels are compiled.
+/// Stack entries for a tree of `depth` levels and the EMPTY at the bottom: a multiple of eight, so that few different
+/// kernels are compiled.
 pub fn stack_size(depth: u32) -> u32 {
-    (depth + 1).next_multiple_of(8)
+    (depth + 2).next_multiple_of(8)
 }
 
 /// An assembled kernel.

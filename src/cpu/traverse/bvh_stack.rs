@@ -12,8 +12,14 @@ pub const STACK_SIZE: usize = 128;
 /// the top bit set four bits of count and 27 bits of first record (`kernels/lib/bvh.wgsl`).
 pub const LEAF: u32 = 0x8000_0000;
 
-/// No inner node has its children at 0: the end, and an empty tree's root.
-pub const EMPTY: u32 = 0;
+/// A leaf without records: the end, and an empty tree's root.
+pub const EMPTY: u32 = LEAF;
+
+/// The root's reference.
+#[inline(always)]
+pub fn root_reference(root: &BvhNode) -> u32 {
+    if root.first == 0 && root.count == 0 { EMPTY } else { node_reference(root) }
+}
 
 /// Packs a node's reference.
 #[inline(always)]
@@ -46,30 +52,25 @@ impl<'a> BvhStack<'a> {
         BvhStack { triangles, pairs: bvh.nodes.as_chunks().0 }
     }
 
-    #[inline(always)]
-    fn root_reference(&self, ray: &Ray, limit: f32) -> u32 {
-        let root = &self.pairs[0][0];
-        let (min, max) = root.corners();
-        if wanted(ray_box(ray, min, max), limit) { node_reference(root) } else { EMPTY }
-    }
-
     /// The loop of both functions: `leaf` is called with first record and count, and returns the distance beyond which
     /// nothing is of interest any more; a negative one ends the traversal.
     #[inline(always)]
     fn walk<C: Count>(&self, ray: &Ray, mut t: f32, count: &mut C, mut leaf: impl FnMut(u32, u32, &mut C) -> f32) {
-        let mut stack = [0u32; STACK_SIZE];
-        let mut depth = 0;
-        let mut node = self.root_reference(ray, t);
-        while node != EMPTY {
-            if node & LEAF != 0 {
-                count.leaf();
-                let (first, records) = leaf_records(node);
-                t = leaf(first, records, count);
-                if t < 0.0 {
-                    return;
-                }
-                node = EMPTY;
-            } else {
+        let mut stack = [EMPTY; STACK_SIZE];
+        let mut depth = 1; // the lowest entry is EMPTY
+        let root = &self.pairs[0][0];
+        let (min, max) = root.corners();
+        let mut node = if wanted(ray_box(ray, min, max), t) { root_reference(root) } else { EMPTY };
+        let mut pop = |node: &mut u32, depth: &mut usize, stack: &[u32; STACK_SIZE], count: &mut C| {
+            *depth -= 1;
+            *node = stack[*depth];
+            if *node != EMPTY {
+                count.pop();
+            }
+        };
+        loop {
+            // Down, nearer child first, until the node is a leaf or nothing is left
+            while node & LEAF == 0 {
                 count.inner();
                 let [left, right] = &self.pairs[node as usize / 2];
                 let (min, max) = left.corners();
@@ -85,14 +86,19 @@ impl<'a> BvhStack<'a> {
                     }
                     (true, false) => node = node_reference(left),
                     (false, true) => node = node_reference(right),
-                    (false, false) => node = EMPTY,
+                    (false, false) => pop(&mut node, &mut depth, &stack, count),
                 }
             }
-            if node == EMPTY && depth > 0 {
-                count.pop();
-                depth -= 1;
-                node = stack[depth];
+            if node == EMPTY {
+                return;
             }
+            count.leaf();
+            let (first, records) = leaf_records(node);
+            t = leaf(first, records, count);
+            if t < 0.0 {
+                return;
+            }
+            pop(&mut node, &mut depth, &stack, count);
         }
     }
 }
