@@ -3,7 +3,7 @@
 use crate::accel::{Structure, Traversal};
 use crate::camera::View;
 use crate::error::Result;
-use crate::math::Hit;
+use crate::math::{Aabb, Hit};
 use crate::scene::Scene;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
@@ -94,6 +94,15 @@ pub struct CountedPixel {
     pub pad: u32,
     /// By ray type.
     pub counters: PixelCounters,
+}
+
+/// Work-groups render squares of this many pixels a side; bands of rows are multiples of it.
+pub const GROUP_SIDE: u32 = 8;
+
+/// How far off a surface secondary rays start, in scene units: far above the rounding of coordinates of the scene's
+/// size (about 1e-7 of it), far below anything that is seen.
+pub fn surface_epsilon(bounds: Aabb) -> f32 {
+    bounds.diagonal() * 1.0e-5
 }
 
 /// Width and height of an image in pixels.

@@ -22,7 +22,13 @@ pub struct BvhNode {
 /// Most records a leaf may have: traversals pack a leaf into one word, four bits of it are the count.
 pub const MAX_LEAF: u32 = 15;
 
+/// No builder makes a tree deeper than this, whatever it is given: traversals size their stacks by [`Bvh::depth`].
+pub const MAX_DEPTH: u32 = 60;
+
 impl BvhNode {
+    /// An empty leaf: the dummy sibling of the root, and the root of an empty scene. Its box contains nothing.
+    pub const NONE: BvhNode = BvhNode { min: [f32::MAX; 3], first: 0, max: [f32::MIN; 3], count: 0 };
+
     /// Both corners, loaded as 16-byte rows (see [`crate::math::Ray`] on the hidden fourth lane).
     #[inline(always)]
     pub fn corners(&self) -> (Vec3A, Vec3A) {

@@ -4,8 +4,12 @@
 //! traversal. [`Variant`] names a pair of builder and traversal, which is what a table's row measures.
 
 pub mod bvh;
+mod bvh_bins;
+pub mod bvh_build;
 pub mod grid;
 pub mod kdtree;
+pub mod octants;
+pub mod prims;
 
 use crate::math::Aabb;
 use bytemuck::{Pod, Zeroable};

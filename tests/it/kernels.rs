@@ -1,1 +1,139 @@
-//! kernels
+//! Every kernel variant goes through naga, and every struct that kernels and host share has the same layout on both
+//! sides. Needs no GPU.
+
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+use rtbench::accel::Traversal;
+use rtbench::accel::octants::Octant;
+use rtbench::backend::{Config, CountedPixel, Counters, Pixel};
+use rtbench::gpu::kernels::{self, Entry, Kernel, Source};
+use rtbench::gpu::{FrameUniform, StructureUniform, TraceRay};
+use rtbench::math::Vertex;
+use rtbench::scene::{Light, Material};
+use std::mem::offset_of;
+
+fn assemble(kernel: &Kernel) -> Source {
+    kernel.assemble().unwrap_or_else(|problem| panic!("{}: {problem}", kernel.label()))
+}
+
+/// Parses and validates; the error names file and line below `kernels/`.
+fn check(source: &Source) -> Result<naga::Module, String> {
+    let at = |location: Option<naga::SourceLocation>| {
+        location.map_or("?".to_string(), |location| source.locate(location.line_number as usize))
+    };
+    let module = naga::front::wgsl::parse_str(&source.text)
+        .map_err(|e| format!("{}: {}", at(e.location(&source.text)), e.message()))?;
+    Validator::new(ValidationFlags::all(), Capabilities::empty())
+        .validate(&module)
+        .map_err(|e| format!("{}: {:?}", at(e.location(&source.text)), e.into_inner()))?;
+    Ok(module)
+}
+
+#[test]
+fn every_variant_is_valid() {
+    let kernels = kernels::all();
+    assert_eq!(kernels.len(), 5 * 8, "five traversals times six render and two trace entries");
+    for kernel in kernels {
+        if let Err(problem) = check(&assemble(&kernel)) {
+            panic!("{}: {problem}", kernel.label());
+        }
+    }
+}
+
+#[test]
+fn a_broken_kernel_is_located() {
+    let kernel = Kernel {
+        entry: Entry::Render { config: Config::P, counting: false },
+        traversal: Traversal::Bvh,
+        stack_size: 32,
+    };
+    let mut source = assemble(&kernel);
+    let (_, geom) = kernels::FILES.iter().find(|(name, _)| *name == "lib/geom.wgsl").unwrap();
+    let line = geom.lines().position(|l| l.contains("return a.x * b.x")).unwrap() + 1;
+    source.text = source.text.replace("return a.x * b.x", "return a * b.x");
+    let problem = check(&source).unwrap_err();
+    assert!(
+        problem.starts_with(&format!("kernels/lib/geom.wgsl:{line}")) || problem.contains("geom.wgsl"),
+        "{problem}"
+    );
+}
+
+/// Size, stride-relevant alignment and member offsets of a WGSL struct.
+fn layout(module: &naga::Module, name: &str) -> (u32, Vec<(String, u32)>) {
+    let ty = module
+        .types
+        .iter()
+        .find(|(_, ty)| ty.name.as_deref() == Some(name))
+        .unwrap_or_else(|| panic!("no struct {name} in the kernel"))
+        .1;
+    let naga::TypeInner::Struct { members, span } = &ty.inner else { panic!("{name} is no struct") };
+    (*span, members.iter().map(|m| (m.name.clone().unwrap(), m.offset)).collect())
+}
+
+macro_rules! same_layout {
+    ($module:expr, $wgsl:literal, $rust:ty, [$($field:ident),* $(,)?]) => {
+        let (span, members) = layout($module, $wgsl);
+        assert_eq!(span as usize, size_of::<$rust>(), "size of {}", $wgsl);
+        let rust = [$((stringify!($field), offset_of!($rust, $field))),*];
+        for (name, offset) in rust {
+            let member = members.iter().find(|(member, _)| member == name);
+            let member = member.unwrap_or_else(|| panic!("{} has no member {name}", $wgsl));
+            assert_eq!(member.1 as usize, offset, "offset of {}.{name}", $wgsl);
+        }
+    };
+}
+
+#[test]
+fn struct_layouts_agree() {
+    let render = |traversal, counting| {
+        let kernel = Kernel { entry: Entry::Render { config: Config::PSR, counting }, traversal, stack_size: 32 };
+        check(&assemble(&kernel)).unwrap()
+    };
+    let module = &render(Traversal::Grid, true);
+    same_layout!(
+        module,
+        "Frame",
+        FrameUniform,
+        [
+            origin,
+            width,
+            corner,
+            first_row,
+            right,
+            rows,
+            down,
+            epsilon,
+            background,
+            light_count,
+            first_light,
+            first_pixel
+        ]
+    );
+    same_layout!(
+        module,
+        "Structure",
+        StructureUniform,
+        [bounds_min, cell_size, bounds_max, records, resolution, octants]
+    );
+    same_layout!(module, "Octant", Octant, [step, end]);
+    same_layout!(module, "Vertex", Vertex, [position, normal]);
+    same_layout!(module, "Material", Material, [ambient, reflectivity, diffuse, exponent, specular]);
+    same_layout!(module, "Light", Light, [position, colour]);
+    same_layout!(module, "Counters", Counters, [rays, inner, leaves, tests, pops, restarts]);
+    let (span, members) = layout(module, "CountedPixel");
+    assert_eq!(span as usize, size_of::<CountedPixel>());
+    assert_eq!(members.iter().find(|m| m.0 == "t").unwrap().1 as usize, offset_of!(CountedPixel, t));
+    assert_eq!(members.iter().find(|m| m.0 == "counters").unwrap().1 as usize, offset_of!(CountedPixel, counters));
+    let module = &render(Traversal::BvhStack, false);
+    same_layout!(module, "Pixel", Pixel, [triangle, rgba]);
+    let (span, members) = layout(module, "Node");
+    assert_eq!(span as usize, size_of::<rtbench::accel::bvh::BvhNode>());
+    let offsets: Vec<_> = members.iter().map(|m| m.1 as usize).collect();
+    use rtbench::accel::bvh::BvhNode;
+    assert_eq!(
+        offsets,
+        [offset_of!(BvhNode, min), offset_of!(BvhNode, first), offset_of!(BvhNode, max), offset_of!(BvhNode, count)]
+    );
+    let kernel = Kernel { entry: Entry::Trace { any_hit: false }, traversal: Traversal::Brute, stack_size: 8 };
+    let module = &check(&assemble(&kernel)).unwrap();
+    same_layout!(module, "GivenRay", TraceRay, [origin, direction]);
+}

@@ -1,0 +1,67 @@
+// The scene in storage buffers, and the test of one stored triangle.
+
+struct Vertex {
+    position: vec4<f32>,
+    normal: vec4<f32>,
+}
+
+struct Material {
+    ambient: vec3<f32>,
+    reflectivity: f32,
+    diffuse: vec3<f32>,
+    exponent: f32,
+    specular: vec3<f32>,
+    pad: f32,
+}
+
+struct Light {
+    position: vec4<f32>,
+    colour: vec4<f32>,
+}
+
+// What the structure needs beside its nodes; filled by src/gpu/upload.rs from the built structure.
+struct Structure {
+    bounds_min: vec3<f32>,
+    cell_size: f32,
+    bounds_max: vec3<f32>,
+    records: u32,
+    resolution: vec3<u32>,
+    pad: u32,
+    octants: array<Octant, 8>,
+}
+
+// Grid traversal's constants by the signs of the ray's direction (bit 0: x is negative, 1: y, 2: z).
+struct Octant {
+    step: vec4<i32>, // +1 or -1 per axis
+    end: vec4<i32>,  // first cell index outside the grid per axis
+}
+
+@group(0) @binding(1) var<storage, read> vertices: array<Vertex>;
+@group(0) @binding(2) var<storage, read> records: array<vec4<u32>>; // three vertices and the triangle's index
+@group(0) @binding(7) var<uniform> structure: Structure;
+
+// The nearest hit so far. Of equal distances the lower triangle index wins, so that the order of tests is no matter.
+struct Best {
+    t: f32,
+    triangle: u32,
+    record: u32,
+}
+
+fn no_best() -> Best {
+    return Best(T_MAX, MISS, MISS);
+}
+
+fn test_record(ray: Ray, record: u32, best: ptr<function, Best>) {
+    let r = records[record];
+    let hit = intersect(ray, vertices[r.x].position.xyz, vertices[r.y].position.xyz, vertices[r.z].position.xyz);
+    if (hit.t < (*best).t || (hit.t == (*best).t && r.w < (*best).triangle)) {
+        *best = Best(hit.t, r.w, record);
+    }
+}
+
+// True if the triangle is hit at a distance below `limit`.
+fn record_blocks(ray: Ray, record: u32, limit: f32) -> bool {
+    let r = records[record];
+    let hit = intersect(ray, vertices[r.x].position.xyz, vertices[r.y].position.xyz, vertices[r.z].position.xyz);
+    return hit.t < limit;
+}

@@ -1,0 +1,236 @@
+//! BVH builder: top down, SAH over binned centroids, until at most `max_leaf` triangles are left (SPEC section 4).
+
+use super::bvh::{Bvh, BvhNode, MAX_DEPTH};
+use super::bvh_bins::{Binning, Item, Rows, Splitter};
+use super::prims::{self, CHUNK, Prim};
+use crate::error::Result;
+use crate::math::Aabb;
+use crate::scene::Scene;
+use rayon::prelude::*;
+
+/// What can be set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Config {
+    /// Bins per axis, 2 to [`super::bvh_bins::MAX_BINS`].
+    pub bins: usize,
+    /// A node with at most this many triangles is a leaf, 1 to [`super::bvh::MAX_LEAF`].
+    pub max_leaf: usize,
+}
+
+impl Default for Config {
+    /// What explains the published node counts best.
+    fn default() -> Self {
+        Config { bins: 16, max_leaf: 4 }
+    }
+}
+
+/// Subtrees of at most this many triangles are built by one thread into one vector. A constant, so that the tree does
+/// not depend on the number of threads.
+const TASK: usize = 4096;
+
+/// Builds a BVH over all triangles that can be hit, on the threads of the current rayon pool.
+pub fn build(scene: &Scene, config: &Config) -> Result<Bvh> {
+    let prims = prims::prims(scene)?;
+    let bounds = prims::bounds(&prims);
+    if prims.is_empty() {
+        return Ok(Bvh { bounds, nodes: vec![BvhNode::NONE; 2], records: Vec::new(), depth: 0 });
+    }
+    let item = |prim: &Prim| {
+        let [a, b, c] = scene.corners(prim.triangle());
+        Item { prim: *prim, centroid3: (a + b + c).extend(1.0) }
+    };
+    let mut items: Vec<Item> = prims.par_iter().with_min_len(CHUNK).map(item).collect();
+    let builder = Builder { config: *config, unit: unit(&bounds) };
+    let mut scratch = vec![Item::NONE; prims.len()];
+    let rows = Rows { min: bounds.min.extend(0.0), max: bounds.max.extend(0.0) };
+    let part = builder.grow(&mut items, &mut scratch, 0, rows, 0);
+    drop(scratch);
+    let depth = part.depth;
+    let records = items
+        .par_iter()
+        .with_min_len(CHUNK)
+        .map(|item| prims::record(scene, item.prim.triangle()))
+        .collect();
+    Ok(Bvh { bounds, nodes: part.into_nodes(), records, depth })
+}
+
+/// A power of two near 1 over the largest extent: areas in this unit neither overflow nor vanish.
+fn unit(bounds: &Aabb) -> f32 {
+    let extent = (bounds.max.as_dvec3() - bounds.min.as_dvec3()).max_element();
+    if extent > 0.0 { extent.log2().floor().clamp(-120.0, 120.0).exp2().recip() as f32 } else { 1.0 }
+}
+
+struct Builder {
+    config: Config,
+    unit: f32,
+}
+
+/// A finished subtree: its root, and what lies below it.
+struct Part {
+    root: BvhNode,
+    below: Below,
+    depth: u32,
+}
+
+enum Below {
+    /// Pairs of siblings; links count from the start of this vector.
+    Nodes(Vec<BvhNode>),
+    /// Two subtrees that were built side by side.
+    Parts(Box<[Part; 2]>),
+}
+
+/// Two sides of a split: where the right one begins, and their boxes.
+struct Sides {
+    mid: usize,
+    left: Rows,
+    right: Rows,
+}
+
+impl Builder {
+    /// Builds the subtree of `items`, whose records will begin at `first`; sides of large nodes in parallel.
+    fn grow(&self, items: &mut [Item], scratch: &mut [Item], first: u32, bounds: Rows, depth: u32) -> Part {
+        let mut splitter = Splitter::new(self.unit);
+        if items.len() <= TASK {
+            let mut nodes = Vec::with_capacity(items.len());
+            let (root, depth) = self.subtree(items, scratch, first, bounds, depth, &mut splitter, &mut nodes);
+            return Part { root, below: Below::Nodes(nodes), depth };
+        }
+        let sides = self.divide(items, scratch, depth, &mut splitter);
+        let (left, right) = items.split_at_mut(sides.mid);
+        let (left_scratch, right_scratch) = scratch.split_at_mut(sides.mid);
+        let (a, b) = rayon::join(
+            || self.grow(left, left_scratch, first, sides.left, depth + 1),
+            || self.grow(right, right_scratch, first + sides.mid as u32, sides.right, depth + 1),
+        );
+        let depth = 1 + a.depth.max(b.depth);
+        Part { root: BvhNode::inner(&bounds, 0), below: Below::Parts(Box::new([a, b])), depth }
+    }
+
+    /// Builds a subtree into `nodes`, depth first; returns its root and its depth.
+    #[allow(clippy::too_many_arguments)]
+    fn subtree(
+        &self,
+        items: &mut [Item],
+        scratch: &mut [Item],
+        first: u32,
+        bounds: Rows,
+        depth: u32,
+        splitter: &mut Splitter,
+        nodes: &mut Vec<BvhNode>,
+    ) -> (BvhNode, u32) {
+        if items.len() <= self.config.max_leaf {
+            return (BvhNode::leaf(&bounds, first, items.len() as u32), 0);
+        }
+        let sides = self.divide(items, scratch, depth, splitter);
+        let pair = nodes.len();
+        nodes.extend([BvhNode::NONE; 2]);
+        let (left, right) = items.split_at_mut(sides.mid);
+        let (left_scratch, right_scratch) = scratch.split_at_mut(sides.mid);
+        let (a, a_depth) = self.subtree(left, left_scratch, first, sides.left, depth + 1, splitter, nodes);
+        let mid = first + sides.mid as u32;
+        let (b, b_depth) = self.subtree(right, right_scratch, mid, sides.right, depth + 1, splitter, nodes);
+        nodes[pair] = a;
+        nodes[pair + 1] = b;
+        (BvhNode::inner(&bounds, pair as u32), 1 + a_depth.max(b_depth))
+    }
+
+    /// Reorders `items` into two non-empty sides.
+    fn divide(&self, items: &mut [Item], scratch: &mut [Item], depth: u32, splitter: &mut Splitter) -> Sides {
+        // Halving from here on would just keep within the greatest depth: no more adventures.
+        let halvings = usize::BITS - items.len().leading_zeros();
+        if depth + halvings >= MAX_DEPTH {
+            return halve(items);
+        }
+        let mut centroids = Rows::EMPTY;
+        for item in items.iter() {
+            let c = item.centroid3;
+            centroids.grow(c, c);
+        }
+        let binning = Binning::new(&centroids, self.config.bins);
+        let Some(split) = splitter.find(items, &binning) else { return halve(items) };
+        let mid = partition(items, scratch, |p| binning.of(p)[split.axis] <= split.bin);
+        debug_assert_eq!(mid, split.left_count);
+        Sides { mid, left: split.left, right: split.right }
+    }
+}
+
+/// Stable partition without a branch per element: every element is written to both sides, and only one side advances.
+#[inline(always)]
+fn partition(items: &mut [Item], scratch: &mut [Item], goes_left: impl Fn(&Item) -> bool) -> usize {
+    let (mut left, mut right) = (0, 0);
+    for i in 0..items.len() {
+        let item = items[i];
+        let flag = goes_left(&item) as usize;
+        items[left] = item;
+        scratch[right] = item;
+        left += flag;
+        right += 1 - flag;
+    }
+    items[left..].copy_from_slice(&scratch[..right]);
+    left
+}
+
+/// Where the centroids say nothing: half of them each, in the order in which they stand.
+fn halve(items: &[Item]) -> Sides {
+    let mid = items.len() / 2;
+    let around = |items: &[Item]| {
+        let mut rows = Rows::EMPTY;
+        items.iter().for_each(|p| rows.grow(p.prim.min, p.prim.max));
+        rows
+    };
+    Sides { mid, left: around(&items[..mid]), right: around(&items[mid..]) }
+}
+
+impl Part {
+    fn len(&self) -> usize {
+        match &self.below {
+            Below::Nodes(nodes) => nodes.len(),
+            Below::Parts(parts) => 2 + parts[0].len() + parts[1].len(),
+        }
+    }
+
+    /// Lays the parts out one after another behind the root pair and moves their links.
+    fn into_nodes(self) -> Vec<BvhNode> {
+        let mut nodes = vec![BvhNode::NONE; 2 + self.len()];
+        let (pair, rest) = nodes.split_at_mut(2);
+        pair[0] = self.place(rest, 2);
+        nodes
+    }
+
+    /// Writes everything below this part's root to `out`, which begins at node `base`; returns the root.
+    fn place(self, out: &mut [BvhNode], base: u32) -> BvhNode {
+        match self.below {
+            Below::Nodes(nodes) => {
+                out.iter_mut().zip(&nodes).for_each(|(out, node)| *out = node.moved(base));
+                self.root.moved(base)
+            }
+            Below::Parts(parts) => {
+                let [a, b] = *parts;
+                let (pair, rest) = out.split_at_mut(2);
+                let a_len = a.len();
+                let (a_out, b_out) = rest.split_at_mut(a_len);
+                let (left, right) =
+                    rayon::join(|| a.place(a_out, base + 2), || b.place(b_out, base + 2 + a_len as u32));
+                pair.copy_from_slice(&[left, right]);
+                self.root.moved(base)
+            }
+        }
+    }
+}
+
+impl BvhNode {
+    fn leaf(bounds: &Rows, first: u32, count: u32) -> BvhNode {
+        let Aabb { min, max } = bounds.aabb();
+        BvhNode { min: min.to_array(), first, max: max.to_array(), count }
+    }
+
+    fn inner(bounds: &Rows, first: u32) -> BvhNode {
+        BvhNode::leaf(bounds, first, 0)
+    }
+
+    /// With its link moved by `base`; leaves refer to records, which do not move.
+    fn moved(self, base: u32) -> BvhNode {
+        if self.count == 0 { BvhNode { first: self.first + base, ..self } } else { self }
+    }
+}
+

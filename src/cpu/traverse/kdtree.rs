@@ -1,0 +1,155 @@
+//! kd-tree with a short stack, pushdown and restart (Foley and Sugerman 2005, Horn et al. 2007). Twin of
+//! `kernels/traverse/kdtree.wgsl`.
+
+use super::{Best, TraverseAlone, Triangles};
+use crate::accel::kdtree::{KdNode, KdTree as Tree};
+use crate::cpu::count::Count;
+use crate::math::{MISS, Ray, T_MAX, ray_box};
+
+/// Entries of the short stack (SPEC section 3); a power of two.
+pub const SHORT_STACK: usize = 4;
+
+/// See the module.
+pub struct KdTree<'a> {
+    /// Records and vertices.
+    pub triangles: Triangles<'a>,
+    /// The tree.
+    pub tree: &'a Tree,
+}
+
+#[derive(Clone, Copy, Default)]
+struct Entry {
+    node: u32,
+    t_min: f32,
+    t_max: f32,
+}
+
+struct Descent {
+    node: u32,
+    t_min: f32,
+    t_max: f32,
+    /// Where the ray leaves the tree, or its limit.
+    t_end: f32,
+    restart_node: u32,
+    /// The ray has not branched yet: the restart node follows.
+    pushdown: bool,
+    /// Entries ever pushed less those popped; modulo [`SHORT_STACK`] it is a place in the ring.
+    top: usize,
+    /// Entries that are still in the ring.
+    held: usize,
+    stack: [Entry; SHORT_STACK],
+}
+
+impl Descent {
+    /// Go one inner node down.
+    #[inline]
+    fn descend(&mut self, ray: &Ray, node: KdNode) {
+        let axis = node.axis();
+        let inv = ray.inv_direction[axis];
+        let t_split = (node.split() - ray.origin[axis]) * inv;
+        // Ordered along the ray. A plane behind the origin has t_split < 0 <= t_min: only the far side is left, which
+        // is the side of the origin, as in the thesis.
+        let (left, right) = (self.node + 1, node.right());
+        let (near, far) = if inv < 0.0 { (right, left) } else { (left, right) };
+        if t_split >= self.t_max {
+            self.node = near;
+        } else if t_split <= self.t_min {
+            self.node = far;
+        } else {
+            self.stack[self.top & (SHORT_STACK - 1)] = Entry { node: far, t_min: t_split, t_max: self.t_max };
+            self.top += 1;
+            self.held = (self.held + 1).min(SHORT_STACK);
+            self.node = near;
+            self.t_max = t_split;
+            self.pushdown = false;
+        }
+        if self.pushdown {
+            self.restart_node = self.node;
+        }
+    }
+
+    /// Leave a leaf: pop, or restart behind it. False at the end of the ray.
+    #[inline]
+    fn leave_leaf<C: Count>(&mut self, count: &mut C) -> bool {
+        if self.held > 0 {
+            count.pop();
+            self.top -= 1;
+            self.held -= 1;
+            let entry = self.stack[self.top & (SHORT_STACK - 1)];
+            (self.node, self.t_min, self.t_max) = (entry.node, entry.t_min, entry.t_max);
+            return true;
+        }
+        if self.t_max >= self.t_end {
+            return false;
+        }
+        count.restart();
+        self.t_min = self.t_max;
+        self.t_max = self.t_end;
+        self.node = self.restart_node;
+        true
+    }
+}
+
+impl KdTree<'_> {
+    #[inline]
+    fn start_descent(&self, ray: &Ray, limit: f32) -> Option<Descent> {
+        let (near, far) = ray_box(ray, self.tree.bounds.min.into(), self.tree.bounds.max.into());
+        let t_min = near.max(0.0);
+        let t_end = far.min(limit);
+        (near <= far && t_min <= t_end).then_some(Descent {
+            node: 0,
+            t_min,
+            t_max: t_end,
+            t_end,
+            restart_node: 0,
+            pushdown: true,
+            top: 0,
+            held: 0,
+            stack: Default::default(),
+        })
+    }
+}
+
+impl TraverseAlone for KdTree<'_> {
+    fn nearest_hit<C: Count>(&self, ray: &Ray, count: &mut C) -> u32 {
+        let mut best = Best::NONE;
+        let Some(mut d) = self.start_descent(ray, T_MAX) else {
+            return MISS;
+        };
+        loop {
+            let node = self.tree.nodes[d.node as usize];
+            if node.is_leaf() {
+                count.leaf();
+                self.triangles.test_records(ray, node.first(), node.count(), &mut best, count);
+                // Exactly at the leaf's border the next leaf may hold a triangle at the same distance with a lower index
+                if best.t < d.t_max || !d.leave_leaf(count) {
+                    return best.record;
+                }
+            } else {
+                count.inner();
+                d.descend(ray, node);
+            }
+        }
+    }
+
+    fn any_hit<C: Count>(&self, ray: &Ray, limit: f32, count: &mut C) -> bool {
+        let Some(mut d) = self.start_descent(ray, limit) else {
+            return false;
+        };
+        loop {
+            let node = self.tree.nodes[d.node as usize];
+            if node.is_leaf() {
+                count.leaf();
+                if self.triangles.any_record_blocks(ray, node.first(), node.count(), limit, count) {
+                    return true;
+                }
+                if !d.leave_leaf(count) {
+                    return false;
+                }
+            } else {
+                count.inner();
+                d.descend(ray, node);
+            }
+        }
+    }
+}

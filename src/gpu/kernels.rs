@@ -1,0 +1,211 @@
+//! Assembles a kernel: an entry file, a traversal, a set of constants. WGSL has no include and an `override` may not
+//! size an array, so that both are done here, in text; a line map turns naga's lines back into files and lines.
+
+use crate::accel::Traversal;
+use crate::backend::Config;
+use crate::math;
+use std::fmt::Write;
+
+/// Every file of `kernels/`, compiled into the program.
+pub const FILES: &[(&str, &str)] = &[
+    ("render.wgsl", include_str!("../../kernels/render.wgsl")),
+    ("trace.wgsl", include_str!("../../kernels/trace.wgsl")),
+    ("lib/geom.wgsl", include_str!("../../kernels/lib/geom.wgsl")),
+    ("lib/scene.wgsl", include_str!("../../kernels/lib/scene.wgsl")),
+    ("lib/shade.wgsl", include_str!("../../kernels/lib/shade.wgsl")),
+    ("lib/count_off.wgsl", include_str!("../../kernels/lib/count_off.wgsl")),
+    ("lib/count_on.wgsl", include_str!("../../kernels/lib/count_on.wgsl")),
+    ("lib/store_timed.wgsl", include_str!("../../kernels/lib/store_timed.wgsl")),
+    ("lib/store_counted.wgsl", include_str!("../../kernels/lib/store_counted.wgsl")),
+    ("lib/alone.wgsl", include_str!("../../kernels/lib/alone.wgsl")),
+    ("lib/together.wgsl", include_str!("../../kernels/lib/together.wgsl")),
+    ("lib/bvh.wgsl", include_str!("../../kernels/lib/bvh.wgsl")),
+    ("traverse/brute.wgsl", include_str!("../../kernels/traverse/brute.wgsl")),
+    ("traverse/grid.wgsl", include_str!("../../kernels/traverse/grid.wgsl")),
+    ("traverse/kdtree.wgsl", include_str!("../../kernels/traverse/kdtree.wgsl")),
+    ("traverse/bvh.wgsl", include_str!("../../kernels/traverse/bvh.wgsl")),
+    ("traverse/bvh_stack.wgsl", include_str!("../../kernels/traverse/bvh_stack.wgsl")),
+];
+
+/// Entries of the kd-tree's short stack (SPEC section 3); a power of two.
+pub const SHORT_STACK: u32 = 4;
+
+/// Which entry file, and how it is specialised.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Entry {
+    /// `render.wgsl`.
+    Render {
+        /// Ray configuration.
+        config: Config,
+        /// With counters, or timed.
+        counting: bool,
+    },
+    /// `trace.wgsl`.
+    Trace {
+        /// Any hit instead of the nearest one.
+        any_hit: bool,
+    },
+}
+
+/// One kernel variant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Kernel {
+    /// Entry file and its constants.
+    pub entry: Entry,
+    /// File in `traverse/`.
+    pub traversal: Traversal,
+    /// Entries of a full stack, see [`stack_size`].
+    pub stack_size: u32,
+}
+
+/// Stack entries for a tree of `depth` levels and the EMPTY at the bottom: a multiple of eight, so that few different
+/// kernels are compiled.
+pub fn stack_size(depth: u32) -> u32 {
+    (depth + 2).next_multiple_of(8)
+}
+
+/// An assembled kernel.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// WGSL.
+    pub text: String,
+    /// For each line of `text`: file and line (counted from 1) that it came from.
+    pub lines: Vec<(&'static str, usize)>,
+}
+
+impl Source {
+    /// The file and line of line `line` (counted from 1) of the text, as `kernels/FILE:LINE`.
+    pub fn locate(&self, line: usize) -> String {
+        match self.lines.get(line.wrapping_sub(1)) {
+            Some((file, line)) => format!("kernels/{file}:{line}"),
+            None => format!("line {line} of the assembled kernel"),
+        }
+    }
+
+    /// BLAKE3 of the text: the identity of a measured kernel.
+    pub fn hash(&self) -> String {
+        blake3::hash(self.text.as_bytes()).to_hex()[..16].to_string()
+    }
+}
+
+/// File of a traversal below `kernels/`.
+pub fn traversal_file(traversal: Traversal) -> &'static str {
+    match traversal {
+        Traversal::Brute => "traverse/brute.wgsl",
+        Traversal::Grid => "traverse/grid.wgsl",
+        Traversal::KdTree => "traverse/kdtree.wgsl",
+        Traversal::Bvh => "traverse/bvh.wgsl",
+        Traversal::BvhStack => "traverse/bvh_stack.wgsl",
+    }
+}
+
+impl Kernel {
+    /// A name for labels and messages.
+    pub fn label(&self) -> String {
+        let traversal = traversal_file(self.traversal).trim_start_matches("traverse/").trim_end_matches(".wgsl");
+        match self.entry {
+            Entry::Render { config, counting } => {
+                format!("{traversal} {config:?}{}", if counting { " counting" } else { "" })
+            }
+            Entry::Trace { any_hit } => format!("{traversal} trace{}", if any_hit { " any hit" } else { "" }),
+        }
+    }
+
+    /// The WGSL of this variant.
+    ///
+    /// # Errors
+    /// A message with file and line for an include that does not exist (a mistake in `kernels/`).
+    pub fn assemble(&self) -> Result<Source, String> {
+        let (entry, counting) = match self.entry {
+            Entry::Render { counting, .. } => ("render.wgsl", counting),
+            Entry::Trace { .. } => ("trace.wgsl", false),
+        };
+        let mut assembly = Assembly {
+            slots: [
+                ("traversal", traversal_file(self.traversal)),
+                ("counting", if counting { "lib/count_on.wgsl" } else { "lib/count_off.wgsl" }),
+                ("store", if counting { "lib/store_counted.wgsl" } else { "lib/store_timed.wgsl" }),
+            ],
+            seen: Vec::new(),
+            source: Source { text: String::new(), lines: Vec::new() },
+        };
+        for line in self.prelude().lines() {
+            assembly.push(line, "(prelude)", 1);
+        }
+        assembly.include(entry, "(prelude)", 1)?;
+        Ok(assembly.source)
+    }
+
+    /// Constants that the kernels take from Rust, so that both sides have the same.
+    fn prelude(&self) -> String {
+        let mut text = String::new();
+        let mut float = |name: &str, value: f32| writeln!(text, "const {name}: f32 = {value:?}f;").unwrap();
+        float("T_MAX", math::T_MAX);
+        float("INVERSE_OF_ZERO", math::INVERSE_OF_ZERO);
+        float("DETERMINANT_MIN", math::DETERMINANT_MIN);
+        let mut word = |name: &str, value: u32| writeln!(text, "const {name}: u32 = {value}u;").unwrap();
+        word("MISS", math::MISS);
+        word("SHORT_STACK", SHORT_STACK);
+        word("STACK_SIZE", self.stack_size);
+        match self.entry {
+            Entry::Render { config, .. } => {
+                word("BOUNCES", config.bounces());
+                writeln!(text, "const SHADOWS: bool = {};", config.shadows()).unwrap();
+            }
+            Entry::Trace { any_hit } => writeln!(text, "const ANY_HIT: bool = {any_hit};").unwrap(),
+        }
+        text
+    }
+}
+
+struct Assembly {
+    slots: [(&'static str, &'static str); 3],
+    seen: Vec<&'static str>,
+    source: Source,
+}
+
+impl Assembly {
+    fn push(&mut self, line: &str, file: &'static str, number: usize) {
+        self.source.text.push_str(line);
+        self.source.text.push('\n');
+        self.source.lines.push((file, number));
+    }
+
+    /// Adds a file, and before the lines that ask for them, others; each once.
+    fn include(&mut self, name: &str, from: &str, line: usize) -> Result<(), String> {
+        let Some(&(name, text)) = FILES.iter().find(|(file, _)| *file == name) else {
+            return Err(format!("kernels/{from}:{line}: no such kernel file: {name}"));
+        };
+        if self.seen.contains(&name) {
+            return Ok(());
+        }
+        self.seen.push(name);
+        for (index, text) in text.lines().enumerate() {
+            if let Some(included) = text.strip_prefix("//!include ") {
+                self.include(included.trim(), name, index + 1)?;
+            } else if let Some(slot) = text.strip_prefix("//!slot ") {
+                let slot = slot.trim();
+                let Some((_, file)) = self.slots.iter().find(|(known, _)| *known == slot) else {
+                    return Err(format!("kernels/{name}:{}: no such slot: {slot}", index + 1));
+                };
+                self.include(file, name, index + 1)?;
+            } else {
+                self.push(text, name, index + 1);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// All variants that the program can run, with a stack of 32: what the static checks go through.
+pub fn all() -> Vec<Kernel> {
+    let traversals = [Traversal::Brute, Traversal::Grid, Traversal::KdTree, Traversal::Bvh, Traversal::BvhStack];
+    let mut entries: Vec<Entry> = [false, true].map(|any_hit| Entry::Trace { any_hit }).to_vec();
+    for config in Config::ALL {
+        entries.extend([false, true].map(|counting| Entry::Render { config, counting }));
+    }
+    traversals
+        .iter()
+        .flat_map(|&traversal| entries.iter().map(move |&entry| Kernel { entry, traversal, stack_size: 32 }))
+        .collect()
+}

@@ -1,0 +1,411 @@
+//! A scene and a structure on a device: rendering, counting, timing, tracing.
+
+use super::device::{Compiled, GpuBackend};
+use super::kernels::{Entry, Kernel, stack_size};
+use super::shared::{FrameUniform, TraceRay};
+use super::upload::Uploaded;
+use crate::accel::{Structure, Traversal};
+use crate::backend::*;
+use crate::camera::View;
+use crate::error::{Error, Result};
+use crate::math::{Hit, T_MAX};
+use crate::scene::{Light, Scene};
+use bytemuck::{AnyBitPattern, NoUninit, Zeroable};
+use std::collections::{HashMap, VecDeque};
+use std::time::{Duration, Instant};
+use wgpu::util::DeviceExt;
+
+/// Bands of frames that are rendered or counted, not timed: about this many pixels.
+const BAND_PIXELS: u32 = 262_144;
+
+/// Rays per dispatch of [`Prepared::trace`].
+const TRACE_RAYS: usize = 1 << 20;
+
+/// Submissions in flight while timing: the next one is there before the last one is done.
+const IN_FLIGHT: usize = 2;
+
+pub(super) struct GpuPrepared<'a> {
+    backend: &'a GpuBackend,
+    scene: &'a Scene,
+    uploaded: Uploaded,
+    traversal: Traversal,
+    stack_size: u32,
+    epsilon: f32,
+    /// Bands per frame that keep a dispatch below the watchdog, by configuration and size.
+    bands: HashMap<(Config, Size), u32>,
+}
+
+/// Uniforms and lights of many frames, uploaded before any of them runs.
+struct Frames {
+    uniforms: wgpu::Buffer,
+    lights: wgpu::Buffer,
+    stride: u32,
+    /// Rows of each uniform's band, and columns: what is dispatched.
+    groups: Vec<(u32, u32)>,
+}
+
+/// A band of rows: first row, number of rows, first pixel in the output.
+type Band = (u32, u32, u32);
+
+impl<'a> GpuPrepared<'a> {
+    pub fn new(
+        backend: &'a GpuBackend,
+        scene: &'a Scene,
+        structure: &'a Structure,
+        traversal: Traversal,
+    ) -> Result<GpuPrepared<'a>> {
+        let depth = match (structure, traversal) {
+            (Structure::Brute(_), Traversal::Brute)
+            | (Structure::Grid(_), Traversal::Grid)
+            | (Structure::KdTree(_), Traversal::KdTree) => 0,
+            (Structure::Bvh(bvh), Traversal::Bvh | Traversal::BvhStack) => bvh.depth,
+            _ => return Err(Error::Device(format!("{traversal:?} cannot walk this structure"))),
+        };
+        Ok(GpuPrepared {
+            backend,
+            scene,
+            uploaded: backend.upload(scene, structure)?,
+            traversal,
+            stack_size: stack_size(depth),
+            epsilon: surface_epsilon(scene.bounds()),
+            bands: HashMap::new(),
+        })
+    }
+
+    fn kernel(&self, entry: Entry) -> Kernel {
+        Kernel { entry, traversal: self.traversal, stack_size: self.stack_size }
+    }
+
+    /// Uploads the uniforms of all bands of all views.
+    fn frames(&self, views: &[View], size: Size, bands: &[Band]) -> Result<Frames> {
+        let stride = (size_of::<FrameUniform>() as u32)
+            .next_multiple_of(self.backend.limits.min_uniform_buffer_offset_alignment);
+        let mut uniforms = Vec::with_capacity(views.len() * bands.len() * stride as usize);
+        let mut lights: Vec<Light> = Vec::new();
+        let mut groups = Vec::with_capacity(views.len() * bands.len());
+        for view in views {
+            let grid = view.camera.pixel_grid(size.width, size.height);
+            for &(first_row, rows, first_pixel) in bands {
+                let uniform = FrameUniform {
+                    origin: grid.origin,
+                    width: size.width,
+                    corner: grid.corner,
+                    first_row,
+                    right: grid.right,
+                    rows,
+                    down: grid.down,
+                    epsilon: self.epsilon,
+                    background: self.scene.background,
+                    light_count: view.lights.len() as u32,
+                    first_light: lights.len() as u32,
+                    first_pixel,
+                    pad: [0; 2],
+                };
+                uniforms.extend_from_slice(bytemuck::bytes_of(&uniform));
+                uniforms.resize(uniforms.len().next_multiple_of(stride as usize), 0);
+                groups.push((size.width.div_ceil(GROUP_SIDE), rows.div_ceil(GROUP_SIDE)));
+            }
+            lights.extend_from_slice(&view.lights);
+        }
+        let most = self.backend.limits.max_compute_workgroups_per_dimension;
+        if let Some((x, y)) = groups.iter().find(|(x, y)| *x.max(y) > most) {
+            let problem = format!("an image of {x} x {y} work-groups is beyond this device's {most} per dimension");
+            return Err(Error::Device(problem));
+        }
+        let device = &self.backend.device;
+        let uniforms = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("frames"),
+            contents: &uniforms,
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+        Ok(Frames { uniforms, lights: self.backend.storage("the lights", &lights)?, stride, groups })
+    }
+
+    fn render_bindings(&self, compiled: &Compiled, frames: &Frames, output: &wgpu::Buffer) -> wgpu::BindGroup {
+        let uniform = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            buffer: &frames.uniforms,
+            offset: 0,
+            size: wgpu::BufferSize::new(size_of::<FrameUniform>() as u64),
+        });
+        let whole = |binding, buffer: &'_ wgpu::Buffer| (binding, buffer.clone());
+        let buffers = [
+            whole(1, &self.uploaded.vertices),
+            whole(2, &self.uploaded.records),
+            whole(3, &self.uploaded.materials),
+            whole(4, &self.uploaded.triangle_materials),
+            whole(5, &frames.lights),
+            whole(6, &self.uploaded.nodes),
+            whole(7, &self.uploaded.structure),
+            whole(8, output),
+        ];
+        self.bind(compiled, uniform, &buffers)
+    }
+
+    fn bind(
+        &self,
+        compiled: &Compiled,
+        first: wgpu::BindingResource,
+        buffers: &[(u32, wgpu::Buffer)],
+    ) -> wgpu::BindGroup {
+        let mut entries = vec![wgpu::BindGroupEntry { binding: 0, resource: first }];
+        entries.extend(
+            buffers
+                .iter()
+                .map(|(binding, b)| wgpu::BindGroupEntry { binding: *binding, resource: b.as_entire_binding() }),
+        );
+        let layout = &compiled.bindings;
+        self.backend.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+    }
+
+    /// Submits one band.
+    fn submit(
+        &self,
+        compiled: &Compiled,
+        bindings: &wgpu::BindGroup,
+        frames: &Frames,
+        index: usize,
+        timer: Option<(&wgpu::QuerySet, u32)>,
+    ) -> wgpu::SubmissionIndex {
+        let mut encoder = self.backend.device.create_command_encoder(&Default::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: None,
+                timestamp_writes: timer.map(|(query_set, first)| wgpu::ComputePassTimestampWrites {
+                    query_set,
+                    beginning_of_pass_write_index: Some(first),
+                    end_of_pass_write_index: Some(first + 1),
+                }),
+            });
+            pass.set_pipeline(&compiled.pipeline);
+            pass.set_bind_group(0, bindings, &[index as u32 * frames.stride]);
+            let (x, y) = frames.groups[index];
+            pass.dispatch_workgroups(x, y, 1);
+        }
+        self.backend.queue.submit([encoder.finish()])
+    }
+
+    /// Copies a buffer's first `count` elements back.
+    fn read<T: AnyBitPattern + NoUninit>(&self, buffer: &wgpu::Buffer, count: usize) -> Result<Vec<T>> {
+        let size = (count * size_of::<T>()) as u64;
+        let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+        let staging = self.backend.buffer("the read-back", size, usage)?;
+        let mut encoder = self.backend.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, size);
+        let submission = self.backend.queue.submit([encoder.finish()]);
+        staging.map_async(wgpu::MapMode::Read, 0..size, |_| ());
+        self.backend.wait(submission)?;
+        let view =
+            staging.get_mapped_range(0..size).map_err(|e| Error::DeviceLost(format!("cannot read back: {e}")))?;
+        Ok(bytemuck::pod_collect_to_vec(&view))
+    }
+
+    /// A buffer for output, filled with [`POISON`]: what a kernel does not write is then seen.
+    fn poisoned(&self, what: &str, size: u64) -> Result<wgpu::Buffer> {
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+        let buffer = self.backend.buffer(what, size, usage)?;
+        let poison = vec![POISON; (size as usize).div_ceil(4)];
+        self.backend.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&poison));
+        Ok(buffer)
+    }
+
+    /// Bands per frame for timing: one, unless the frame would keep the device busy for longer than a watchdog likes.
+    fn timing_bands(&mut self, config: Config, view: &View, size: Size) -> Result<u32> {
+        if self.backend.software() {
+            return Ok(1);
+        }
+        if let Some(&bands) = self.bands.get(&(config, size)) {
+            return Ok(bands);
+        }
+        let compiled = self.backend.compiled(self.kernel(Entry::Render { config, counting: false }))?;
+        let output = self.poisoned("the image", (size.pixels() * size_of::<Pixel>()) as u64)?;
+        let narrow = split(size, size.height.div_ceil(64), true);
+        let frames = self.frames(std::slice::from_ref(view), size, &narrow)?;
+        let bindings = self.render_bindings(&compiled, &frames, &output);
+        let mut slowest = Duration::ZERO;
+        for index in 0..narrow.len() {
+            let start = Instant::now();
+            let submission = self.submit(&compiled, &bindings, &frames, index, None);
+            self.backend.wait(submission)?;
+            slowest = slowest.max(start.elapsed());
+        }
+        // As if all bands were as slow as the slowest
+        let whole = slowest * narrow.len() as u32;
+        let bands = whole.as_nanos().div_ceil(self.backend.options.max_dispatch.as_nanos().max(1)).max(1) as u32;
+        self.bands.insert((config, size), bands);
+        Ok(bands)
+    }
+}
+
+/// Splits an image into about `bands` bands of whole work-groups. With `one_output`, each band has its own place in the
+/// output; otherwise all begin at its start.
+fn split(size: Size, bands: u32, one_output: bool) -> Vec<Band> {
+    let rows = size.height.div_ceil(bands.max(1)).next_multiple_of(GROUP_SIDE);
+    (0..size.height)
+        .step_by(rows as usize)
+        .map(|row| (row, rows.min(size.height - row), if one_output { row * size.width } else { 0 }))
+        .collect()
+}
+
+impl Prepared for GpuPrepared<'_> {
+    fn image(&mut self, config: Config, view: &View, size: Size) -> Result<Vec<Pixel>> {
+        let compiled = self.backend.compiled(self.kernel(Entry::Render { config, counting: false }))?;
+        let output = self.poisoned("the image", (size.pixels() * size_of::<Pixel>()) as u64)?;
+        let bands = split(size, (size.pixels() as u32).div_ceil(BAND_PIXELS), true);
+        let frames = self.frames(std::slice::from_ref(view), size, &bands)?;
+        let bindings = self.render_bindings(&compiled, &frames, &output);
+        for index in 0..bands.len() {
+            let submission = self.submit(&compiled, &bindings, &frames, index, None);
+            self.backend.wait(submission)?;
+        }
+        self.read(&output, size.pixels())
+    }
+
+    fn counted(
+        &mut self,
+        config: Config,
+        view: &View,
+        size: Size,
+        band: &mut dyn FnMut(u32, &[CountedPixel]),
+    ) -> Result<()> {
+        let compiled = self.backend.compiled(self.kernel(Entry::Render { config, counting: true }))?;
+        let bands = split(size, (size.pixels() as u32).div_ceil(BAND_PIXELS), false);
+        let largest = bands.iter().map(|b| b.1 as usize * size.width as usize).max().unwrap_or(0);
+        let output = self.poisoned("the counters", (largest * size_of::<CountedPixel>()) as u64)?;
+        let frames = self.frames(std::slice::from_ref(view), size, &bands)?;
+        let bindings = self.render_bindings(&compiled, &frames, &output);
+        for (index, &(first_row, rows, _)) in bands.iter().enumerate() {
+            self.submit(&compiled, &bindings, &frames, index, None);
+            let pixels: Vec<CountedPixel> = self.read(&output, (rows * size.width) as usize)?;
+            band(first_row, &pixels);
+        }
+        Ok(())
+    }
+
+    fn time_path(
+        &mut self,
+        config: Config,
+        views: &[View],
+        size: Size,
+        interrupted: Interrupted,
+    ) -> Result<Vec<FrameTime>> {
+        let Some(first_view) = views.first() else {
+            return Ok(Vec::new());
+        };
+        let backend = self.backend;
+        let bands = split(size, self.timing_bands(config, first_view, size)?, true);
+        let compiled = backend.compiled(self.kernel(Entry::Render { config, counting: false }))?;
+        let output = self.poisoned("the image", (size.pixels() * size_of::<Pixel>()) as u64)?;
+        let timestamps = backend.info().timestamp_period_ns;
+        // As many frames at a time as a query set has room for
+        let chunk = (wgpu::QUERY_SET_MAX_QUERIES as usize / (2 * bands.len())).max(1);
+        let mut times = Vec::with_capacity(views.len());
+        for views in views.chunks(chunk) {
+            let frames = self.frames(views, size, &bands)?;
+            let bindings = self.render_bindings(&compiled, &frames, &output);
+            let count = (frames.groups.len() * 2) as u32;
+            let queries = timestamps.map(|_| {
+                backend.device.create_query_set(&wgpu::QuerySetDescriptor {
+                    label: None,
+                    ty: wgpu::QueryType::Timestamp,
+                    count,
+                })
+            });
+            let mut walls = Vec::with_capacity(frames.groups.len());
+            let mut in_flight = VecDeque::with_capacity(IN_FLIGHT);
+            let mut last = Instant::now();
+            let mut done = |in_flight: &mut VecDeque<_>, most: usize| -> Result<()> {
+                while in_flight.len() > most {
+                    if let Some(submission) = in_flight.pop_front() {
+                        backend.wait(submission)?;
+                        let now = Instant::now();
+                        walls.push((now - last).as_nanos() as u64);
+                        last = now;
+                    }
+                }
+                Ok(())
+            };
+            for index in 0..frames.groups.len() {
+                if interrupted() {
+                    done(&mut in_flight, 0)?;
+                    return Err(Error::Interrupted);
+                }
+                let timer = queries.as_ref().map(|set| (set, index as u32 * 2));
+                in_flight.push_back(self.submit(&compiled, &bindings, &frames, index, timer));
+                done(&mut in_flight, IN_FLIGHT - 1)?;
+            }
+            done(&mut in_flight, 0)?;
+            let ticks = match &queries {
+                Some(set) => self.resolve(set, count)?,
+                None => Vec::new(),
+            };
+            for (frame, walls) in walls.chunks(bands.len()).enumerate() {
+                let device_ns = timestamps.and_then(|period| {
+                    let pairs = ticks[frame * bands.len() * 2..][..bands.len() * 2].chunks_exact(2);
+                    // A clock that runs backwards is broken; the record falls back to wall time
+                    let spans: Option<Vec<u64>> = pairs.map(|pair| pair[1].checked_sub(pair[0])).collect();
+                    spans.map(|spans| (spans.iter().sum::<u64>() as f64 * f64::from(period)) as u64)
+                });
+                times.push(FrameTime { device_ns, wall_ns: walls.iter().sum() });
+            }
+        }
+        Ok(times)
+    }
+
+    fn trace(&mut self, rays: &[GivenRay], any_hit: bool) -> Result<Vec<Hit>> {
+        let compiled = self.backend.compiled(self.kernel(Entry::Trace { any_hit }))?;
+        let mut hits = Vec::with_capacity(rays.len());
+        for rays in rays.chunks(TRACE_RAYS) {
+            let given: Vec<TraceRay> = rays
+                .iter()
+                .map(|ray| TraceRay { origin: ray.origin, direction: ray.direction, ..TraceRay::zeroed() })
+                .collect();
+            let given = self.backend.storage("the given rays", &given)?;
+            let job = self.backend.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("job"),
+                contents: bytemuck::cast_slice(&[rays.len() as u32, 0, 0, 0]),
+                usage: wgpu::BufferUsages::UNIFORM,
+            });
+            let output = self.poisoned("the hits", (rays.len() * 8) as u64)?;
+            let bindings = self.bind(
+                &compiled,
+                job.as_entire_binding(),
+                &[
+                    (1, self.uploaded.vertices.clone()),
+                    (2, self.uploaded.records.clone()),
+                    (3, given),
+                    (6, self.uploaded.nodes.clone()),
+                    (7, self.uploaded.structure.clone()),
+                    (8, output.clone()),
+                ],
+            );
+            let mut encoder = self.backend.device.create_command_encoder(&Default::default());
+            {
+                let mut pass = encoder.begin_compute_pass(&Default::default());
+                pass.set_pipeline(&compiled.pipeline);
+                pass.set_bind_group(0, &bindings, &[]);
+                pass.dispatch_workgroups(rays.len().div_ceil(64) as u32, 1, 1);
+            }
+            self.backend.queue.submit([encoder.finish()]);
+            let found: Vec<[u32; 2]> = self.read(&output, rays.len())?;
+            hits.extend(found.iter().map(|&[t, triangle]| Hit { t: f32::from_bits(t), triangle }));
+        }
+        debug_assert!(hits.iter().all(|hit| hit.t <= T_MAX));
+        Ok(hits)
+    }
+
+    fn allocated(&self) -> (u64, u64) {
+        let lights = std::mem::size_of_val(self.scene.lights.as_slice()) as u64;
+        (self.uploaded.geometry_bytes + lights, self.uploaded.structure_bytes)
+    }
+}
+
+impl GpuPrepared<'_> {
+    fn resolve(&self, set: &wgpu::QuerySet, count: u32) -> Result<Vec<u64>> {
+        let usage = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
+        let resolved = self.backend.buffer("the timestamps", u64::from(count) * 8, usage)?;
+        let mut encoder = self.backend.device.create_command_encoder(&Default::default());
+        encoder.resolve_query_set(set, 0..count, &resolved, 0);
+        self.backend.queue.submit([encoder.finish()]);
+        self.read(&resolved, count as usize)
+    }
+}

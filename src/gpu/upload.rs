@@ -1,0 +1,131 @@
+//! Scene and structure in device buffers, and the ledger of their bytes.
+
+use super::device::GpuBackend;
+use super::shared::StructureUniform;
+use crate::accel::octants::octants;
+use crate::accel::{Record, Structure};
+use crate::error::{Error, Result};
+use crate::math::Aabb;
+use crate::scene::Scene;
+use bytemuck::{NoUninit, Pod};
+use glam::Vec3;
+use wgpu::util::DeviceExt;
+
+/// Buffers of one scene and one structure.
+pub(super) struct Uploaded {
+    pub vertices: wgpu::Buffer,
+    pub records: wgpu::Buffer,
+    pub materials: wgpu::Buffer,
+    pub triangle_materials: wgpu::Buffer,
+    pub nodes: wgpu::Buffer,
+    pub structure: wgpu::Buffer,
+    /// Bytes of vertices, materials and the triangles' materials.
+    pub geometry_bytes: u64,
+    /// Bytes of nodes (or cells) and records.
+    pub structure_bytes: u64,
+}
+
+/// Smallest storage buffer: an empty one cannot be bound, and a binding must hold one element.
+const SMALLEST: usize = 96;
+
+impl GpuBackend {
+    /// A storage buffer with contents.
+    pub(super) fn storage<T: NoUninit>(&self, what: &str, contents: &[T]) -> Result<wgpu::Buffer> {
+        let bytes: &[u8] = bytemuck::cast_slice(contents);
+        self.check_size(what, bytes.len() as u64)?;
+        let mut padded = Vec::new();
+        let contents = if bytes.len() < SMALLEST {
+            padded.extend_from_slice(bytes);
+            padded.resize(SMALLEST, 0);
+            &padded
+        } else {
+            bytes
+        };
+        let usage = wgpu::BufferUsages::STORAGE;
+        Ok(self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(what), contents, usage }))
+    }
+
+    /// An uninitialised buffer.
+    pub(super) fn buffer(&self, what: &str, size: u64, usage: wgpu::BufferUsages) -> Result<wgpu::Buffer> {
+        self.check_size(what, size)?;
+        let size = size.max(SMALLEST as u64).next_multiple_of(4);
+        Ok(self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(what),
+            size,
+            usage,
+            mapped_at_creation: false,
+        }))
+    }
+
+    fn check_size(&self, what: &str, bytes: u64) -> Result<()> {
+        let limit = self.limits.max_storage_buffer_binding_size.min(self.limits.max_buffer_size);
+        if bytes <= limit {
+            return Ok(());
+        }
+        let mib = |bytes: u64| bytes.div_ceil(1 << 20);
+        Err(Error::Device(format!(
+            "{what} needs {} MiB, but this device binds at most {} MiB as one buffer (use a smaller scene, a structure \
+             with fewer references, or another device)",
+            mib(bytes),
+            limit >> 20
+        )))
+    }
+
+    /// Uploads a scene and a structure.
+    pub(super) fn upload(&self, scene: &Scene, structure: &Structure) -> Result<Uploaded> {
+        let (records, nodes): (&[Record], &[u8]) = match structure {
+            Structure::Brute(brute) => (&brute.records, &[]),
+            Structure::Grid(grid) => (&grid.records, bytes(&grid.cells)),
+            Structure::KdTree(tree) => (&tree.records, bytes(&tree.nodes)),
+            Structure::Bvh(bvh) => (&bvh.records, bytes(&bvh.nodes)),
+        };
+        let triangle_materials: Vec<u32> = scene.triangles.iter().map(|t| t.material).collect();
+        let size = |bytes: &[u8]| bytes.len() as u64;
+        let uploaded = Uploaded {
+            vertices: self.storage("the vertices", &scene.vertices)?,
+            records: self.storage("the structure's triangle records", records)?,
+            materials: self.storage("the materials", &scene.materials)?,
+            triangle_materials: self.storage("the triangles' materials", &triangle_materials)?,
+            nodes: self.storage("the structure's nodes or cells", nodes)?,
+            structure: self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("structure"),
+                contents: bytemuck::bytes_of(&structure_uniform(structure)),
+                usage: wgpu::BufferUsages::UNIFORM,
+            }),
+            geometry_bytes: size(bytes(&scene.vertices))
+                + size(bytes(&scene.materials))
+                + size(bytes(&triangle_materials)),
+            structure_bytes: size(nodes) + size(bytes(records)),
+        };
+        self.check()?;
+        Ok(uploaded)
+    }
+}
+
+fn bytes<T: Pod>(contents: &[T]) -> &[u8] {
+    bytemuck::cast_slice(contents)
+}
+
+fn structure_uniform(structure: &Structure) -> StructureUniform {
+    let (bounds, records) = match structure {
+        Structure::Brute(s) => (s.bounds, &s.records),
+        Structure::Grid(s) => (s.bounds, &s.records),
+        Structure::KdTree(s) => (s.bounds, &s.records),
+        Structure::Bvh(s) => (s.bounds, &s.records),
+    };
+    // An empty box is infinite the wrong way round; WGSL may assume that nothing is
+    let bounds = if bounds.is_empty() { Aabb { min: Vec3::ONE, max: Vec3::NEG_ONE } } else { bounds };
+    let (resolution, cell_size) = match structure {
+        Structure::Grid(grid) => (grid.resolution, grid.cell_size),
+        _ => ([1; 3], 1.0),
+    };
+    StructureUniform {
+        bounds_min: bounds.min,
+        cell_size,
+        bounds_max: bounds.max,
+        records: records.len() as u32,
+        resolution,
+        pad: 0,
+        octants: octants(resolution),
+    }
+}
