@@ -39,14 +39,7 @@ pub struct Material {
 impl Material {
     /// A matt material of one colour, with a little ambient light.
     pub fn matt(diffuse: Vec3) -> Material {
-        Material {
-            ambient: diffuse * 0.1,
-            reflectivity: 0.0,
-            diffuse,
-            exponent: 1.0,
-            specular: Vec3::ZERO,
-            pad: 0.0,
-        }
+        Material { ambient: diffuse * 0.1, reflectivity: 0.0, diffuse, exponent: 1.0, specular: Vec3::ZERO, pad: 0.0 }
     }
 
     /// With a highlight and a mirror's share.
@@ -108,9 +101,7 @@ impl Scene {
 
     /// The box around all triangles.
     pub fn bounds(&self) -> Aabb {
-        Aabb::from_points(
-            self.triangles.iter().flat_map(|t| t.vertices).map(|v| self.vertices[v as usize].position),
-        )
+        Aabb::from_points(self.triangles.iter().flat_map(|t| t.vertices).map(|v| self.vertices[v as usize].position))
     }
 }
 
