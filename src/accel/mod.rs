@@ -11,12 +11,9 @@ mod check;
 pub mod grid;
 pub mod grid_build;
 pub mod kdtree;
-<<<<<<< HEAD
 pub mod octants;
-=======
 pub mod kdtree_build;
 pub mod ploc;
->>>>>>> accel
 pub mod prims;
 mod properties;
 mod registry;

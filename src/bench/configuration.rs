@@ -128,7 +128,7 @@ pub fn structure_record(subject: &Subject, selection: &Selection, built: &Built)
         scene: subject.record.clone(),
         structure: selection.name().to_string(),
         variant: selection.variant(),
-        properties: built.structure.properties(subject.scene).into(),
+        properties: built.structure.properties(subject.scene),
         build_ms: built.build_ms,
         build_threads: built.build_threads,
         memory: Memory::default(),

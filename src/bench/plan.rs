@@ -172,7 +172,7 @@ impl Plan {
             Some(name) => CameraPath::load(name)?,
             None => CameraPath::for_scene(scene, config),
         };
-        let record = PathRecord { name: path.name().to_string(), hash: path.content_hash() };
+        let record = PathRecord { name: path.name.clone(), hash: path.content_hash() };
         Ok(Path { record, views: path.views(scene, self.frames)? })
     }
 

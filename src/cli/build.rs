@@ -82,7 +82,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
                 scene: scene_record.clone(),
                 structure: selection.name().to_string(),
                 variant: selection.variant(),
-                properties: built.structure.properties(&scene).into(),
+                properties: built.structure.properties(&scene),
                 build_ms: statistics::median(&times).unwrap_or(built.build_ms),
                 build_threads: built.build_threads,
                 memory: sweep::memory(&built, &scene, None),

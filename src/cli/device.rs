@@ -1,11 +1,12 @@
 //! Which device: flags that several commands share, and the choice that `auto` makes.
 
 use super::output;
-use crate::backend::{DeviceInfo, DeviceType};
+use crate::accel::MAX_THREADS;
+use crate::backend::DeviceType;
 use crate::bench::sweep::Opened;
 use crate::cpu::CpuBackend;
 use crate::error::{Error, Result};
-use crate::gpu::{self, GpuBackend, Selector};
+use crate::gpu::{self, GpuBackend, GpuOptions, Selector};
 use clap::{Args, ValueEnum};
 
 /// Which device, and how it is used.
@@ -37,9 +38,6 @@ pub enum BackendName {
     Cpu,
 }
 
-/// Most threads that one may ask for.
-const MAX_THREADS: usize = 1024;
-
 impl DeviceArguments {
     /// Refuses values that make no sense, before anything runs.
     ///
@@ -63,41 +61,37 @@ impl DeviceArguments {
     pub fn open(&self) -> Result<Opened> {
         self.check()?;
         if self.backend == BackendName::Cpu {
-            return Ok(self.cpu("asked for by --backend cpu".into()));
+            return self.cpu("asked for by --backend cpu".into());
         }
         let adapters = gpu::adapters();
-        let names = || adapters.iter().map(|a| a.name.as_str()).collect::<Vec<_>>().join(", ");
-        let (index, reason) = match &self.adapter {
-            Some(wanted) => {
-                let index = find(&adapters, wanted).ok_or_else(|| {
-                    let problem = format!("no adapter {wanted:?}");
-                    let mend = if adapters.is_empty() { "there is none at all".into() } else { names() };
-                    Error::argument("--adapter", problem, mend)
-                })?;
-                (index, format!("asked for by --adapter {wanted}"))
-            }
-            None => match best(&adapters) {
-                Some(index) if adapters.len() == 1 => (index, "the only Vulkan adapter".into()),
-                Some(index) => (index, format!("the best of {} Vulkan adapters: {}", adapters.len(), names())),
-                None if self.backend == BackendName::Vulkan => {
-                    let mend = "./setup.sh installs a software one, --backend cpu needs none";
-                    return Err(Error::argument("--backend", "there is no Vulkan adapter", mend));
-                }
-                None => return Ok(self.cpu("there is no Vulkan adapter".into())),
-            },
+        let free_choice = self.backend == BackendName::Auto && self.adapter.is_none();
+        if free_choice && adapters.is_empty() {
+            return self.cpu("there is no Vulkan adapter".into());
+        }
+        let selector: Selector = match &self.adapter {
+            Some(wanted) => wanted.parse().unwrap_or_default(),
+            None => Selector::Best,
         };
-        match GpuBackend::open(&Selector::Index(index), gpu::Options { checked: self.checked }) {
+        let index = gpu::choose(&adapters, &selector)?;
+        let reason = match &self.adapter {
+            Some(wanted) => format!("asked for by --adapter {wanted}"),
+            None if adapters.len() == 1 => "the only Vulkan adapter".into(),
+            None => {
+                let names: Vec<&str> = adapters.iter().map(|a| a.name.as_str()).collect();
+                format!("the best of {} Vulkan adapters: {}", adapters.len(), names.join(", "))
+            }
+        };
+        let options = GpuOptions { checked: self.checked, ..GpuOptions::default() };
+        match GpuBackend::open(&Selector::Index(index), options) {
             Ok(backend) => Ok(Opened { backend: Box::new(backend), reason }),
             // Only a free choice may fall back.
-            Err(error) if self.backend == BackendName::Auto && self.adapter.is_none() => {
-                Ok(self.cpu(format!("{} cannot be used: {error}", adapters[index].name)))
-            }
+            Err(error) if free_choice => self.cpu(format!("{} cannot be used: {error}", adapters[index].name)),
             Err(error) => Err(error),
         }
     }
 
-    fn cpu(&self, reason: String) -> Opened {
-        Opened { backend: Box::new(CpuBackend::new(self.threads)), reason }
+    fn cpu(&self, reason: String) -> Result<Opened> {
+        Ok(Opened { backend: Box::new(CpuBackend::new(self.threads)?), reason })
     }
 }
 
@@ -118,28 +112,4 @@ pub fn kind(device_type: DeviceType) -> &'static str {
         DeviceType::VirtualGpu => "virtual GPU",
         DeviceType::Other => "unknown kind",
     }
-}
-
-/// The adapter by number or part of the name, whatever the case.
-fn find(adapters: &[DeviceInfo], wanted: &str) -> Option<usize> {
-    match wanted.parse::<usize>() {
-        Ok(index) if index < adapters.len() => Some(index),
-        _ => {
-            let wanted = wanted.to_lowercase();
-            adapters.iter().position(|a| a.name.to_lowercase().contains(&wanted))
-        }
-    }
-}
-
-/// The adapter that is most likely the fastest; of equals the first.
-fn best(adapters: &[DeviceInfo]) -> Option<usize> {
-    let rank = |a: &DeviceInfo| match a.device_type {
-        DeviceType::DiscreteGpu => 0,
-        DeviceType::IntegratedGpu => 1,
-        DeviceType::VirtualGpu => 2,
-        DeviceType::Other => 3,
-        DeviceType::SoftwareRasteriser => 4,
-        DeviceType::CpuTwin => 5,
-    };
-    (0..adapters.len()).min_by_key(|&index| rank(&adapters[index]))
 }

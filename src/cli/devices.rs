@@ -27,7 +27,7 @@ pub fn run(_: &Arguments) -> Result<()> {
     for (index, adapter) in adapters.iter().enumerate() {
         text += &describe(&format!("--backend vulkan --adapter {index}"), adapter);
     }
-    text += &describe("--backend cpu", CpuBackend::new(0).info());
+    text += &describe("--backend cpu", CpuBackend::new(0)?.info());
     output::print(&text)
 }
 

@@ -104,7 +104,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     };
     let views = path.views(&scene, None)?;
     let view = views.get(arguments.frame).ok_or_else(|| {
-        let problem = format!("the path {} has no frame {}", path.name(), arguments.frame);
+        let problem = format!("the path {} has no frame {}", path.name, arguments.frame);
         Error::argument("--frame", problem, format!("give 0 to {}", views.len().saturating_sub(1)))
     })?;
     let device = arguments.device.open()?;
@@ -129,7 +129,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         size.height,
         arguments.frame,
         views.len(),
-        path.name(),
+        path.name,
     ))
 }
 

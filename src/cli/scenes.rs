@@ -2,7 +2,7 @@
 
 use super::output;
 use crate::backend::Config;
-use crate::camera::CameraPath;
+use crate::camera::{self, CameraPath};
 use crate::error::Result;
 use crate::scene;
 use clap::Subcommand;
@@ -41,9 +41,13 @@ pub fn run(command: &Command) -> Result<()> {
 fn list() -> Result<()> {
     let mut text = String::from("Built-in scenes, as NAME or NAME:KEY=VALUE,...\n");
     for scene in scene::list() {
-        text += &format!("\n  {}\n      {}\n      {}\n", scene.name, scene.summary, scene.parameters);
+        text += &format!("\n  {}\n      {}\n", scene.name, scene.character);
+        for parameter in scene.parameters {
+            let range = format!("{} to {}, default {}", parameter.min, parameter.max, parameter.default);
+            text += &format!("      {:<12} {} ({range})\n", parameter.name, parameter.meaning);
+        }
     }
-    text += &format!("\nCamera paths: {}\n", CameraPath::names().join(", "));
+    text += &format!("\nCamera paths: {}\n", camera::names().join(", "));
     output::print(&text)
 }
 
@@ -63,7 +67,7 @@ fn info(what: &str) -> Result<()> {
     line("largest corner", bounds.max.to_string());
     line("extent", format!("{extent}, diagonal {}", bounds.diagonal()));
     for config in Config::ALL {
-        line(&format!("camera path for {config:?}"), CameraPath::for_scene(&scene, config).name().to_string());
+        line(&format!("camera path for {config:?}"), CameraPath::for_scene(&scene, config).name);
     }
     line("content hash", scene.content_hash());
     for warning in &scene.warnings {

@@ -127,49 +127,6 @@ pub struct SceneRecord {
     pub mirror_share: f64,
 }
 
-/// What a structure looks like; `None` where a number has no meaning for it.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct StructureProperties {
-    /// Cells per axis.
-    pub cells: Option<[u64; 3]>,
-    /// Triangles in the fullest cell.
-    pub max_cell_triangles: Option<u64>,
-    /// Triangle records per triangle.
-    pub references_per_triangle: Option<f64>,
-    /// Leaves, empty ones included.
-    pub leaves: Option<u64>,
-    /// Leaves without a triangle.
-    pub empty_leaves: Option<u64>,
-    /// Triangles in the fullest leaf.
-    pub max_leaf_triangles: Option<u64>,
-    /// Nodes, inner ones and leaves.
-    pub nodes: Option<u64>,
-    /// Levels of inner nodes.
-    pub depth: Option<u64>,
-    /// Expected cost of a ray by the surface area heuristic.
-    pub sah_cost: Option<f64>,
-}
-
-impl From<Properties> for StructureProperties {
-    fn from(p: Properties) -> Self {
-        let cells = match p.cells {
-            [Some(x), Some(y), Some(z)] => Some([x, y, z].map(u64::from)),
-            _ => None,
-        };
-        StructureProperties {
-            cells,
-            max_cell_triangles: p.max_cell_triangles.map(u64::from),
-            references_per_triangle: p.references_per_triangle,
-            leaves: p.leaves.map(u64::from),
-            empty_leaves: p.empty_leaves.map(u64::from),
-            max_leaf_triangles: p.max_leaf_triangles.map(u64::from),
-            nodes: p.nodes.map(u64::from),
-            depth: p.depth.map(u64::from),
-            sah_cost: p.sah_cost,
-        }
-    }
-}
-
 /// A structure that was built.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StructureRecord {
@@ -180,7 +137,7 @@ pub struct StructureRecord {
     /// Options that differ from the defaults, or `default`.
     pub variant: String,
     /// Its properties.
-    pub properties: StructureProperties,
+    pub properties: Properties,
     /// Build time in milliseconds; structures that share a tree also share its time.
     pub build_ms: f64,
     /// Threads that built it.

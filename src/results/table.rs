@@ -48,7 +48,7 @@ fn number(value: Option<f64>) -> String {
 }
 
 /// A whole number; a dash where there is none.
-fn whole(value: Option<u64>) -> String {
+fn whole(value: Option<u32>) -> String {
     value.map_or("-".into(), |v| v.to_string())
 }
 
@@ -65,7 +65,7 @@ fn named(structure: &str, variant: &str) -> String {
 /// The measured configurations, scene by scene, each scene fastest first within a configuration and size.
 pub fn configurations(device: &DeviceInfo, rows: &[Row]) -> String {
     let mut text = format!("{}\n", device_in_words(device));
-    if device.checked {
+    if device.checked && device.device_type != DeviceType::CpuTwin {
         text += "shader checks were on\n";
     }
     for scene in scenes_of(rows) {
