@@ -58,31 +58,59 @@ impl Camera {
 use crate::{Error, Result, backend::Config, scene::Scene};
 /// stub
 #[derive(Clone)]
-pub struct CameraPath { /// n
- pub name: String }
+pub struct CameraPath {
+    /// n
+    pub name: String,
+}
 /// stub
-pub fn names() -> Vec<&'static str> { vec!["orbit", "light-orbit"] }
+pub fn names() -> Vec<&'static str> {
+    vec!["orbit", "light-orbit"]
+}
 impl CameraPath {
     /// stub
     pub fn load(name: &str) -> Result<CameraPath> {
-        if ["orbit", "light-orbit"].contains(&name) { Ok(CameraPath { name: name.into() }) } else { Err(Error::argument("--camera-path", format!("no camera path {name}"), "there are orbit, light-orbit")) }
+        if ["orbit", "light-orbit"].contains(&name) {
+            Ok(CameraPath { name: name.into() })
+        } else {
+            Err(Error::argument("--camera-path", format!("no camera path {name}"), "there are orbit, light-orbit"))
+        }
     }
     /// stub
-    pub fn names() -> Vec<&'static str> { vec!["orbit", "light-orbit"] }
+    pub fn names() -> Vec<&'static str> {
+        vec!["orbit", "light-orbit"]
+    }
     /// stub
-    pub fn for_scene(_: &Scene, c: Config) -> CameraPath { CameraPath { name: if c == Config::P { "orbit" } else { "light-orbit" }.into() } }
+    pub fn for_scene(_: &Scene, c: Config) -> CameraPath {
+        CameraPath { name: if c == Config::P { "orbit" } else { "light-orbit" }.into() }
+    }
     /// stub
-    pub fn name(&self) -> &str { &self.name }
+    pub fn name(&self) -> &str {
+        &self.name
+    }
     /// stub
-    pub fn content_hash(&self) -> String { blake3::hash(self.name.as_bytes()).to_hex().to_string() }
+    pub fn content_hash(&self) -> String {
+        blake3::hash(self.name.as_bytes()).to_hex().to_string()
+    }
     /// stub
     pub fn views(&self, scene: &Scene, frames: Option<usize>) -> Result<Vec<View>> {
         let n = frames.unwrap_or(400);
-        if n == 0 || n > 400 { return Err(Error::argument("--frames", format!("{n} frames"), "1 to 400")); }
-        Ok((0..n).map(|i| {
-            let a = if self.name == "orbit" { i as f32 / n as f32 * 6.2831 } else { 0.0 };
-            let d = Vec3::new(a.cos(), 0.2, a.sin());
-            View { camera: Camera { position: scene.bounds().center() + d * 4.0, direction: -d.normalize(), up: Vec3::Y, field_of_view: 45.0 }, lights: scene.lights.clone() }
-        }).collect())
+        if n == 0 || n > 400 {
+            return Err(Error::argument("--frames", format!("{n} frames"), "1 to 400"));
+        }
+        Ok((0..n)
+            .map(|i| {
+                let a = if self.name == "orbit" { i as f32 / n as f32 * 6.2831 } else { 0.0 };
+                let d = Vec3::new(a.cos(), 0.2, a.sin());
+                View {
+                    camera: Camera {
+                        position: scene.bounds().center() + d * 4.0,
+                        direction: -d.normalize(),
+                        up: Vec3::Y,
+                        field_of_view: 45.0,
+                    },
+                    lights: scene.lights.clone(),
+                }
+            })
+            .collect())
     }
 }

@@ -66,6 +66,18 @@ impl<'a> Verifier<'a> {
         let pixels = prepared.image(config, view, size)?;
         let image: Vec<u8> = pixels.iter().flat_map(|p| p.rgba.to_le_bytes()).collect();
         let bad = pixels.iter().zip(&reference).filter(|(p, r)| p.triangle != r.triangle).count() as u64;
-        Ok(Verdict { ok: bad == 0, message: if bad == 0 { "ok".into() } else { format!("{bad} hits differ") }, rays: size.pixels() as u64, brute_checked: 0, hits_differing: bad, counters_differing: 0, colours_differing: 0, max_colour_difference: 0, image_hash: blake3::hash(&image).to_hex().to_string(), difference: (bad > 0).then(|| image.clone()), image })
+        Ok(Verdict {
+            ok: bad == 0,
+            message: if bad == 0 { "ok".into() } else { format!("{bad} hits differ") },
+            rays: size.pixels() as u64,
+            brute_checked: 0,
+            hits_differing: bad,
+            counters_differing: 0,
+            colours_differing: 0,
+            max_colour_difference: 0,
+            image_hash: blake3::hash(&image).to_hex().to_string(),
+            difference: (bad > 0).then(|| image.clone()),
+            image,
+        })
     }
 }

@@ -43,12 +43,8 @@ fn describe(flags: &str, device: &DeviceInfo) -> String {
         line("threads", threads.to_string());
     }
     if device.backend != "cpu" {
-        let timestamps = match device.timestamp_period_ns {
-            Some(period) => format!("{period} ns per tick"),
-            None => "none: frame times are wall time".to_owned(),
-        };
-        line("timestamps", timestamps);
-        line("features", device.features.join(", "));
+        let none = "none: frame times are wall time".to_owned();
+        line("features", if device.features.is_empty() { none } else { device.features.join(", ") });
         for (limit, value) in &device.limits {
             line("limit", format!("{limit} = {value}"));
         }

@@ -2,9 +2,11 @@
 
 use super::record::Status;
 use super::summary::{Row, Run, StructureRow};
-use crate::backend::{DeviceInfo, DeviceType};
-use comfy_table::presets::UTF8_HORIZONTAL_ONLY;
-use comfy_table::{CellAlignment, Table};
+use crate::backend::{Config, DeviceInfo, DeviceType};
+use comfy_table::{CellAlignment, LineStyle, Table, TableStyle};
+
+/// One line below the headings and nothing else: rows are told apart by what stands in them.
+const STYLE: TableStyle = TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
 
 /// What a device is, in words that say what its times are good for.
 pub fn device_in_words(device: &DeviceInfo) -> String {
@@ -28,7 +30,7 @@ pub fn device_in_words(device: &DeviceInfo) -> String {
 /// A table with these headings; columns from `numbers` on are aligned to the right.
 fn table(headings: &[&str], numbers: usize) -> Table {
     let mut table = Table::new();
-    table.load_style(UTF8_HORIZONTAL_ONLY).set_header(headings.iter().copied());
+    table.load_style(STYLE).set_header(headings.iter().copied());
     for column in table.column_iter_mut().skip(numbers) {
         column.set_cell_alignment(CellAlignment::Right);
     }
@@ -122,18 +124,17 @@ fn table_of_scene(rows: &[&Row]) -> Table {
         ],
         3,
     );
+    let mut last = None;
     for row in rows {
+        if last.is_some_and(|last| last != group(row)) {
+            table.add_row([""]);
+        }
+        last = Some(group(row));
         // As the thesis does, each configuration shows the ray type that it adds.
         let (steps, tests, restarts) = match row.config {
-            crate::backend::Config::P => {
-                (row.primary_steps_per_ray, row.primary_tests_per_ray, row.primary_restarts_per_ray)
-            }
-            crate::backend::Config::PS => {
-                (row.shadow_steps_per_ray, row.shadow_tests_per_ray, row.shadow_restarts_per_ray)
-            }
-            crate::backend::Config::PSR => {
-                (row.reflected_steps_per_ray, row.reflected_tests_per_ray, row.reflected_restarts_per_ray)
-            }
+            Config::P => (row.primary_steps_per_ray, row.primary_tests_per_ray, row.primary_restarts_per_ray),
+            Config::PS => (row.shadow_steps_per_ray, row.shadow_tests_per_ray, row.shadow_restarts_per_ray),
+            Config::PSR => (row.reflected_steps_per_ray, row.reflected_tests_per_ray, row.reflected_restarts_per_ray),
         };
         let result = match (row.status, row.verified) {
             (Status::Ok, true) => "verified",

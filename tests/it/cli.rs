@@ -1,1 +1,378 @@
-//! cli
+//! The program as a user runs it. Everything here runs on the CPU twins and on tiny scenes.
+
+use rtbench::results::journal::{FILE_NAME, Journal};
+use rtbench::results::record::Status;
+use rtbench::results::summary::{Row, Run, StructureRow};
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_rtbench");
+
+/// A sweep of a moment.
+const TINY: &str = "--backend cpu --scene scan:triangles=1000 --frames 2 --passes 2 --resolution 16";
+
+fn command(arguments: &str) -> Command {
+    let mut command = Command::new(PROGRAM);
+    command.args(arguments.split_whitespace()).env_remove("RTBENCH_SCENES");
+    command
+}
+
+fn run(arguments: &str) -> Output {
+    command(arguments).output().unwrap()
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// Runs something that must succeed.
+fn good(arguments: &str) -> String {
+    let output = run(arguments);
+    assert_eq!(output.status.code(), Some(0), "{arguments}\n{}", stderr(&output));
+    stdout(&output)
+}
+
+/// One clear error: exit code 2, one line that says all the `words`, no panic.
+#[track_caller]
+fn one_error(output: &Output, words: &[&str]) {
+    let text = stderr(output);
+    assert_eq!(output.status.code(), Some(2), "{text}");
+    assert!(!text.contains("panicked"), "{text}");
+    let errors: Vec<&str> = text.lines().filter(|line| line.starts_with("rtbench: error: ")).collect();
+    assert_eq!(errors.len(), 1, "{text}");
+    // Notes about the device may stand above; nothing follows, and nothing is broken over lines.
+    assert!(text.lines().all(|line| line.starts_with("rtbench: ")), "{text}");
+    for word in words {
+        assert!(errors[0].contains(word), "{word:?} is missing: {text}");
+    }
+}
+
+#[test]
+fn a_sweep_s_outputs_parse_and_agree() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("deep/run");
+    let text = good(&format!("sweep {TINY} --config P,PS --resolution 16,24x20 --out {}", out.display()));
+    assert!(text.contains("CPU twins") && text.contains("do not rank structures for a GPU"), "{text}");
+
+    let journal = Journal::read(&out.join(FILE_NAME)).unwrap();
+    let json: Run = serde_json::from_str(&std::fs::read_to_string(out.join("run.json")).unwrap()).unwrap();
+    assert_eq!(json, Run::new(&journal));
+    let mut csv = csv::Reader::from_path(out.join("summary.csv")).unwrap();
+    let rows: Vec<Row> = csv.deserialize().collect::<Result<_, _>>().unwrap();
+    assert_eq!(rows, json.configurations);
+    let mut csv = csv::Reader::from_path(out.join("structures.csv")).unwrap();
+    let structures: Vec<StructureRow> = csv.deserialize().collect::<Result<_, _>>().unwrap();
+    assert_eq!(structures, json.structures);
+
+    // Five structures, two configurations, and both the sizes of the command line and no other.
+    assert_eq!((rows.len(), structures.len()), (5 * 2 * 2, 5));
+    assert!(rows.iter().all(|r| r.status == Status::Ok && r.verified && r.frame_ms_mean.unwrap() > 0.0));
+    assert!(rows.iter().all(|r| (r.frames, r.passes) == (2, 2)));
+    assert!(rows.iter().all(|r| r.primary_rays == Some(2 * u64::from(r.width * r.height))));
+    // The same frame is the same picture through every structure.
+    for (a, b) in rows.iter().flat_map(|a| rows.iter().map(move |b| (a, b))) {
+        if (a.config, a.width) == (b.config, b.width) {
+            assert_eq!(a.image_hash, b.image_hash, "{} {}", a.structure, b.structure);
+            assert_eq!(a.shadow_rays, b.shadow_rays);
+        }
+    }
+    assert!(json.end.unwrap().complete);
+    assert!(json.run.arguments.contains(&"--config".to_string()));
+    assert!(!json.run.program.lock_hash.is_empty() && json.run.environment.memory_bytes > 0);
+    // A second run does not go into the same folder.
+    one_error(&run(&format!("sweep {TINY} --out {}", out.display())), &["--out", "not empty"]);
+}
+
+#[test]
+fn each_mistake_is_one_clear_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    let file = |name: &str, text: &str| {
+        std::fs::write(folder.path().join(name), text).unwrap();
+        at(name)
+    };
+    let ply = |name: &str, vertices: &str, faces: &str, body: &str| {
+        let head = format!(
+            "ply\nformat ascii 1.0\nelement vertex {vertices}\nproperty float x\nproperty float y\nproperty float z\n\
+             element face {faces}\nproperty list uchar int vertex_indices\nend_header\n"
+        );
+        file(name, &(head + body))
+    };
+    let corners = "0 0 0\n1 0 0\n0 1 0\n";
+    let truncated = ply("truncated.ply", "3", "2", &format!("{corners}3 0 1 2\n"));
+    let index = ply("index.ply", "3", "1", &format!("{corners}3 0 1 3\n"));
+    let count = ply("count.ply", "1099511627776", "1", corners);
+    let nan = ply("nan.ply", "3", "1", "0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n");
+    let infinite = ply("infinite.ply", "3", "1", "0 0 inf\n1 0 0\n0 1 0\n3 0 1 2\n");
+    let empty = ply("empty.ply", "3", "0", corners);
+    let preset = file("typo.toml", "structures = [\"grid\"]\nconfigs = [\"P\"]\nresolutionz = [\"16\"]\n");
+    let plain = file("plain", "");
+    let out = at("out");
+    for (arguments, words) in [
+        (format!("--scene {}", at("missing.ply")), vec!["missing.ply"]),
+        (format!("--scene {truncated}"), vec!["truncated.ply"]),
+        (format!("--scene {index}"), vec!["index.ply", "3"]),
+        (format!("--scene {count}"), vec!["count.ply"]),
+        (format!("--scene {nan}"), vec!["nan.ply"]),
+        (format!("--scene {infinite}"), vec!["infinite.ply"]),
+        (format!("--scene {empty}"), vec!["empty.ply"]),
+        ("--scene nosuchscene".into(), vec!["nosuchscene"]),
+        ("--resolution 0".into(), vec!["--resolution", "no pixels"]),
+        ("--resolution 12x0".into(), vec!["--resolution", "no pixels"]),
+        ("--resolution 100000x100000".into(), vec!["--resolution", "pixels"]),
+        ("--resolution big".into(), vec!["--resolution", "\"big\""]),
+        ("--structure octree".into(), vec!["--structure", "octree", "kdtree"]),
+        ("--structure grid:nosuch=1".into(), vec!["--structure", "nosuch"]),
+        ("--config PX".into(), vec!["--config", "PSR"]),
+        ("--frames 0".into(), vec!["--frames"]),
+        ("--frames 1000000000".into(), vec!["--frames"]),
+        ("--passes 0".into(), vec!["--passes"]),
+        ("--frames many".into(), vec!["--frames", "many"]),
+        ("--camera-path nosuchpath".into(), vec!["nosuchpath"]),
+        ("--threads 5000".into(), vec!["--threads"]),
+        ("--adapter 0".into(), vec!["--adapter"]),
+        ("--preset nosuchpreset".into(), vec!["--preset", "quick, thesis"]),
+        (format!("--preset {preset}"), vec!["typo.toml:3", "resolutionz"]),
+        (format!("--preset {}", at("missing.toml")), vec!["missing.toml"]),
+        (format!("--out {plain}/run"), vec!["cannot write", "plain"]),
+        ("--out /proc/nowhere/run".into(), vec!["cannot write", "/proc/nowhere"]),
+        ("--nosuchflag".into(), vec!["--nosuchflag"]),
+    ] {
+        // The last of a flag's values does not count where it may be given several times: give each only once.
+        let flag = arguments.split_whitespace().next().unwrap();
+        let mut all = vec!["--scene scan:triangles=1000", "--frames 2", "--resolution 16", "--backend cpu"];
+        all.retain(|given| !given.starts_with(flag));
+        let out = if flag == "--out" { String::new() } else { format!("--out {out}") };
+        let output = run(&format!("sweep {} {arguments} {out}", all.join(" ")));
+        println!("{arguments}: {}", stderr(&output));
+        one_error(&output, &words);
+        // Nothing was begun.
+        assert!(!Path::new(&at("out")).join(FILE_NAME).exists(), "{arguments}");
+    }
+    one_error(&run("sweep --preset thesis --backend cpu"), &["bunny", "https://"]);
+    one_error(&run("nosuchcommand"), &["nosuchcommand"]);
+    one_error(&run(&format!("render --scene scan --backend cpu --frame 400 -o {}", at("x.png"))), &["--frame", "399"]);
+    one_error(&run(&format!("render --scene scan --resolution 0 -o {}", at("x.png"))), &["--resolution"]);
+    one_error(&run(&format!("build --scene scan --runs 0 --csv {}", at("x.csv"))), &["--runs"]);
+    one_error(&run("scenes info nosuchscene"), &["nosuchscene"]);
+    assert!(!Path::new(&at("x.png")).exists() && !Path::new(&at("x.csv")).exists());
+}
+
+#[test]
+fn a_full_disk_keeps_the_rows() {
+    if cfg!(not(unix)) {
+        eprintln!("a_full_disk_keeps_the_rows did not run: it needs a Unix shell");
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    // A limit on the size of files is met in the middle of the journal, as a full disk would be.
+    let script = format!("trap '' XFSZ; ulimit -f 16; exec {PROGRAM} sweep {TINY} --config P --out {}", out.display());
+    let output = Command::new("sh").args(["-c", &script]).env_remove("RTBENCH_SCENES").output().unwrap();
+    one_error(&output, &["cannot write", FILE_NAME]);
+    let journal = Journal::read(&out.join(FILE_NAME)).unwrap();
+    assert!((1..5).contains(&journal.configurations.len()), "{}", journal.configurations.len());
+    assert_eq!(journal.truncated, None);
+    assert!(stderr(&output).contains("what was measured is in"), "{}", stderr(&output));
+}
+
+#[test]
+fn a_full_device() {
+    if !Path::new("/dev/full").exists() {
+        eprintln!("a_full_device did not run: there is no /dev/full");
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let rays = folder.path().join("rays.csv");
+    std::fs::write(&rays, "origin_x,origin_y,origin_z,direction_x,direction_y,direction_z\n0,0,9,0,0,-1\n").unwrap();
+    for arguments in [
+        "render --scene scan:triangles=1000 --backend cpu --resolution 16 -o /dev/full".to_owned(),
+        "build --scene scan:triangles=1000 --csv /dev/full".to_owned(),
+        format!("trace --scene scan:triangles=1000 --backend cpu --rays {} -o /dev/full", rays.display()),
+    ] {
+        one_error(&run(&arguments), &["cannot write /dev/full"]);
+    }
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let output = command("structures").stdout(full).stderr(Stdio::piped()).spawn().unwrap().wait_with_output().unwrap();
+    one_error(&output, &["standard output"]);
+    assert!(!std::fs::metadata("/dev/full").unwrap().is_file());
+}
+
+#[test]
+fn a_closed_pipe_is_no_error() {
+    for arguments in ["structures", "scenes list", "--help", "completions bash", "scenes info scan:triangles=1000"] {
+        let mut child = command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{arguments}: {}", stderr(&output));
+        assert!(!stderr(&output).contains("panicked"), "{arguments}");
+    }
+}
+
+#[test]
+fn ctrl_c_in_the_middle() {
+    if cfg!(not(unix)) {
+        eprintln!("ctrl_c_in_the_middle did not run: it needs Unix signals");
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    let arguments = format!(
+        "sweep --backend cpu --scene scan:triangles=1000 --frames 400 --passes 1000 --resolution 16,512 \
+         --config P --structure bvh-stack --out {}",
+        out.display()
+    );
+    let child = command(&arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    // The first row is small and soon there, the second would take an hour.
+    let journal = out.join(FILE_NAME);
+    let begun = Instant::now();
+    while std::fs::read_to_string(&journal).map_or(0, |text| text.matches("\"configuration\"").count()) < 1 {
+        assert!(begun.elapsed() < Duration::from_secs(120), "no row after two minutes");
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    let killed = Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status().unwrap();
+    assert!(killed.success());
+    let output = child.wait_with_output().unwrap();
+    let text = stderr(&output);
+    assert_eq!(output.status.code(), Some(130), "{text}");
+    assert!(text.contains("rtbench: error: interrupted") && !text.contains("panicked"), "{text}");
+    let journal = Journal::read(&journal).unwrap();
+    assert_eq!(journal.configurations.len(), 1);
+    assert!(journal.end.as_ref().unwrap().interrupted);
+    let json: Run = serde_json::from_str(&std::fs::read_to_string(out.join("run.json")).unwrap()).unwrap();
+    assert_eq!(json, Run::new(&journal));
+    assert_eq!(std::fs::read_to_string(out.join("summary.csv")).unwrap().lines().count(), 2);
+}
+
+#[test]
+fn the_thesis_preset_names_what_is_absent() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenes = folder.path().join("scenes/bunny");
+    std::fs::create_dir_all(&scenes).unwrap();
+    let ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+               element face 4\nproperty list uchar int vertex_indices\nend_header\n\
+               0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 2 3\n3 1 2 3\n";
+    std::fs::write(scenes.join("bun_zipper.ply"), ply).unwrap();
+    let out = folder.path().join("run");
+    let arguments = format!("sweep --preset thesis --backend cpu --frames 2 --resolution 16 --out {}", out.display());
+    let output = command(&arguments).env("RTBENCH_SCENES", folder.path().join("scenes")).output().unwrap();
+    let text = stderr(&output);
+    assert_eq!(output.status.code(), Some(0), "{text}");
+    assert!(text.contains("left out: dragon") && text.contains("dragon_recon.tar.gz"), "{text}");
+    let run = Run::new(&Journal::read(&out.join(FILE_NAME)).unwrap());
+    assert_eq!(run.configurations.len(), 5 * 2);
+    // P: the camera goes around; PS: the light does.
+    assert!(run.configurations.iter().all(|r| r.triangles == 4 && r.passes == 5));
+    assert_eq!(run.configurations[0].camera_path, "orbit");
+    assert_eq!(run.configurations[1].camera_path, "light-orbit");
+}
+
+#[test]
+fn pictures() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = "--backend cpu --scene scan:triangles=1000 --resolution 40x24";
+    let picture = |extra: &str| {
+        let path = folder.path().join("a.png");
+        let text = good(&format!("render {scene} {extra} -o {}", path.display()));
+        (image::open(&path).unwrap().to_rgba8(), text)
+    };
+    let colours = |image: &image::RgbaImage| {
+        let mut colours: Vec<_> = image.pixels().map(|p| p.0).collect();
+        colours.sort_unstable();
+        colours.dedup();
+        colours.len()
+    };
+    let (first, _) = picture("--config PS");
+    assert_eq!(first.dimensions(), (40, 24));
+    assert!(colours(&first) > 8, "a flat picture");
+    assert!(first.pixels().all(|p| p.0[3] == 255));
+    // Every structure shows the same; another frame does not.
+    assert_eq!(picture("--config PS --structure grid").0, first);
+    assert_ne!(picture("--config P --frame 100").0, picture("--config P").0);
+    let (map, legend) = picture("--heatmap tests --structure brute --config P");
+    // Brute force tests every triangle for every pixel: one colour, the brightest, and the legend says so.
+    assert_eq!(colours(&map), 1, "{legend}");
+    assert!(legend.starts_with("triangle tests per pixel: min "), "{legend}");
+    let (map, legend) = picture("--heatmap steps --structure grid --config P");
+    assert!(colours(&map) > 8, "{legend}");
+    assert!(legend.contains("steps per pixel") && legend.contains("mean") && legend.contains("max"), "{legend}");
+}
+
+#[test]
+fn given_rays() {
+    let folder = tempfile::tempdir().unwrap();
+    let (rays, hits) = (folder.path().join("rays.csv"), folder.path().join("hits.csv"));
+    let mut file = std::fs::File::create(&rays).unwrap();
+    writeln!(file, "note,origin_x,origin_y,origin_z,direction_x,direction_y,direction_z,expected").unwrap();
+    for i in 0..50 {
+        let x = i as f32 / 25.0 - 1.0;
+        writeln!(file, "ray {i},{x},0.9,5,0,0,-2,whatever").unwrap();
+    }
+    let trace = |extra: &str| {
+        let (rays, out) = (rays.display(), hits.display());
+        good(&format!("trace --scene scan:triangles=2000 --backend cpu --rays {rays} {extra} -o {out}"));
+        std::fs::read_to_string(&hits).unwrap()
+    };
+    let brute = trace("--structure brute");
+    let lines: Vec<&str> = brute.lines().collect();
+    assert_eq!((lines.len(), lines[0]), (51, "t,triangle"));
+    assert_eq!(lines[1], ",-1", "a ray beside the object");
+    let found: Vec<(f32, i64)> = lines[1..]
+        .iter()
+        .filter_map(|line| line.split_once(',').map(|(t, i)| (t.parse().unwrap_or(f32::NAN), i.parse().unwrap())))
+        .filter(|hit| hit.1 >= 0)
+        .collect();
+    // Distances are in units of the direction's length, which is 2: the object is 4 to 6 away.
+    assert!(found.len() > 10 && found.iter().all(|hit| (2.0..3.0).contains(&hit.0)), "{found:?}");
+    for structure in ["grid", "kdtree", "bvh", "bvh-stack", "ploc-stack"] {
+        assert_eq!(trace(&format!("--structure {structure}")), brute, "{structure}");
+    }
+    let any: Vec<String> = trace("--structure grid --any-hit").lines().skip(1).map(str::to_owned).collect();
+    assert!(any.iter().zip(&lines[1..]).all(|(any, nearest)| any == if *nearest == ",-1" { ",-1" } else { "0,0" }));
+    std::fs::write(&rays, "origin_x,origin_y,origin_z,direction_x,direction_y,direction_z\n0,0,5,0,x,-1\n").unwrap();
+    let out = format!("trace --scene scan --backend cpu --rays {} -o {}", rays.display(), hits.display());
+    one_error(&run(&out), &["rays.csv:2", "direction_y is \"x\""]);
+}
+
+#[test]
+fn structures_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("s.csv");
+    let all = "grid,kdtree,bvh,bvh-stack,ploc-stack,brute";
+    let text = good(&format!(
+        "build --scene scan:triangles=1000 --structure {all} --threads 1 --runs 3 --validate --csv {}",
+        path.display()
+    ));
+    assert!(text.contains("kdtree") && text.contains("ploc-stack"), "{text}");
+    let mut csv = csv::Reader::from_path(&path).unwrap();
+    let rows: Vec<StructureRow> = csv.deserialize().collect::<Result<_, _>>().unwrap();
+    assert_eq!(rows.len(), 6);
+    assert!(rows.iter().all(|r| r.build_threads == 1 && r.build_ms >= 0.0 && r.structure_bytes > 0));
+    assert!(rows[0].cells_x.is_some() && rows[1].leaves.is_some() && rows[1].cells_x.is_none());
+}
+
+#[test]
+fn lists_and_help() {
+    for name in ["grid", "kdtree", "bvh", "bvh-stack", "ploc-stack", "brute"] {
+        assert!(good("structures").lines().any(|line| line.trim() == name), "{name}");
+    }
+    for name in ["scan", "terrain", "sphereflake", "stadium", "hall", "room"] {
+        assert!(good("scenes list").lines().any(|line| line.trim() == name), "{name}");
+    }
+    assert!(good("scenes info scan:triangles=1000").contains("content hash"));
+    assert!(good("devices").contains("--backend cpu"));
+    assert!(good("completions bash").contains("rtbench"));
+    assert!(good("--version").contains("revision"));
+    for command in ["sweep", "render", "build", "trace", "scenes", "completions"] {
+        let help = good(&format!("{command} --help"));
+        assert!(help.contains("Examples:") && help.contains("rtbench "), "{command}: {help}");
+    }
+    // No command is no success, but the help says what there is.
+    assert_eq!(run("").status.code(), Some(2));
+}

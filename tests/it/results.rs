@@ -1,1 +1,311 @@
-//! results
+//! Records and what is made of them: statistics by hand, journals whole and cut off, CSV and JSON that agree.
+
+use crate::support::{configuration, provenance, structure};
+use proptest::prelude::*;
+use rtbench::backend::{Config, FrameTime, GivenRay};
+use rtbench::math::{Hit, MISS};
+use rtbench::results::journal::{FILE_NAME, Journal, JournalWriter};
+use rtbench::results::record::{CounterSums, End, Record, Samples, Status, TimingSource};
+use rtbench::results::summary::{Row, Run, StructureRow, structures_csv, summary_csv};
+use rtbench::results::{files, picture, rays, statistics, table};
+use rtbench::{Error, bench::measure};
+use std::path::{Path, PathBuf};
+
+/// The columns as the issue names them, in its order.
+const SUMMARY: &str = "device,device_type,scene,triangles,structure,variant,config,width,height,frames,passes,\
+    frame_ms_min,frame_ms_max,frame_ms_mean,noise_pct,timing_source,wall_ms_mean,mrays_per_s,primary_rays,shadow_rays,\
+    reflected_rays,primary_steps_per_ray,primary_tests_per_ray,primary_restarts_per_ray,shadow_steps_per_ray,\
+    shadow_tests_per_ray,shadow_restarts_per_ray,reflected_steps_per_ray,reflected_tests_per_ray,\
+    reflected_restarts_per_ray,build_ms,structure_bytes,geometry_bytes,thesis_bytes,image_hash,verified,status,message";
+const STRUCTURES: &str = "scene,structure,variant,cells_x,cells_y,cells_z,max_cell_triangles,references_per_triangle,\
+    leaves,empty_leaves,max_leaf_triangles,nodes,depth,sah_cost,build_ms,build_threads,structure_bytes,geometry_bytes,\
+    thesis_bytes";
+
+#[test]
+fn statistics_by_hand() {
+    // Three passes over two frames. Frame 0: 10, 12, 20 ms: median 12, deviations 2, 0, 8: MAD 2, noise 2/12.
+    // Frame 1: 30, 30, 33 ms: median 30, MAD 0, noise 0. Median of the noises: 1/12 = 8.333 %.
+    let ms = |v: &[u64]| v.iter().map(|x| x * 1_000_000).collect::<Vec<_>>();
+    let s = statistics::frames(&[ms(&[10, 30]), ms(&[20, 30]), ms(&[12, 33])]).unwrap();
+    assert_eq!((s.min_ms, s.max_ms, s.mean_ms, s.total_ms), (12.0, 30.0, 21.0, 42.0));
+    assert_eq!(s.p95_ms, 30.0);
+    assert!((s.noise_pct.unwrap() - 100.0 / 12.0).abs() < 1e-9, "{s:?}");
+    // An even number of passes: the mean of the middle two. One pass: the noise is unknown, not zero.
+    assert_eq!(statistics::frames(&[ms(&[10]), ms(&[20])]).unwrap().mean_ms, 15.0);
+    assert_eq!(statistics::frames(&[ms(&[10, 20])]).unwrap().noise_pct, None);
+    assert_eq!(statistics::frames(&[ms(&[1, 2]), ms(&[1])]), None);
+    assert_eq!(statistics::frames(&[]), None);
+    assert_eq!(statistics::frames(&[vec![]]), None);
+    let twenty: Vec<f64> = (1..=20).map(f64::from).collect();
+    assert_eq!(statistics::percentile(&twenty, 95.0), Some(19.0));
+    assert_eq!(statistics::percentile(&twenty[..19], 95.0), Some(19.0));
+    assert_eq!(statistics::percentile(&[], 95.0), None);
+}
+
+proptest! {
+    #[test]
+    fn statistics_are_ordered(passes in prop::collection::vec(prop::collection::vec(1u64..1 << 40, 5), 1..8)) {
+        let s = statistics::frames(&passes).unwrap();
+        prop_assert!(s.min_ms <= s.mean_ms * (1.0 + 1e-12) && s.mean_ms <= s.max_ms * (1.0 + 1e-12));
+        prop_assert!(s.min_ms <= s.p95_ms && s.p95_ms <= s.max_ms);
+        prop_assert!(s.noise_pct.is_none_or(|n| (0.0..=100.0).contains(&n)));
+        // The order of the passes says nothing.
+        let mut reversed = passes;
+        reversed.reverse();
+        prop_assert_eq!(statistics::frames(&reversed).unwrap(), s);
+    }
+}
+
+/// A journal with a structure, a good row and an error row, as its writer leaves it.
+fn written() -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let mut writer = JournalWriter::create(folder.path(), provenance()).unwrap();
+    writer.write(&Record::Structure(Box::new(structure("grid")))).unwrap();
+    writer.write(&Record::Configuration(Box::new(configuration("grid", Config::PS)))).unwrap();
+    let mut bad = configuration("kdtree", Config::P);
+    bad.status = Status::Error;
+    bad.verified = false;
+    bad.message = "3 hits differ, \"quoted\", with a comma".into();
+    writer.write(&Record::Configuration(Box::new(bad))).unwrap();
+    let path = writer.path().to_owned();
+    (folder, path)
+}
+
+#[test]
+fn journal_round_trip() {
+    let (folder, path) = written();
+    let journal = Journal::read(&path).unwrap();
+    assert_eq!(journal.provenance, provenance());
+    assert_eq!(journal.structures, [structure("grid")]);
+    assert_eq!(journal.configurations.len(), 2);
+    assert_eq!(journal.configurations[0], configuration("grid", Config::PS));
+    assert_eq!((journal.end, journal.truncated), (None, None));
+    let text = std::fs::read_to_string(&path).unwrap();
+    let first: serde_json::Value = serde_json::from_str(text.lines().next().unwrap()).unwrap();
+    assert_eq!((first["record"].as_str(), first["schema"].as_str()), (Some("run"), Some("rtbench/1")));
+    // The folder is taken now.
+    let again = JournalWriter::create(folder.path(), provenance()).err().unwrap();
+    assert!(matches!(again, Error::Input(_)) && again.to_string().contains("not empty"), "{again}");
+}
+
+#[test]
+fn journal_cut_off_anywhere() {
+    let (_folder, path) = written();
+    let bytes = std::fs::read(&path).unwrap();
+    let ends: Vec<usize> = (0..bytes.len()).filter(|&i| bytes[i] == b'\n').collect();
+    for length in 0..=bytes.len() {
+        let read = Journal::parse(&path, &bytes[..length]);
+        if length < ends[0] {
+            assert!(read.is_err(), "nothing is known without the first line, {length}");
+            continue;
+        }
+        let journal = read.unwrap_or_else(|e| panic!("cut off at {length}: {e}"));
+        // A line that only lacks its newline is whole.
+        let whole = ends.iter().filter(|&&end| end <= length).count();
+        assert_eq!(1 + journal.structures.len() + journal.configurations.len(), whole, "{length}");
+        let clean = length == ends[whole - 1] || length == ends[whole - 1] + 1;
+        assert_eq!(journal.truncated.is_none(), clean, "{length}");
+    }
+}
+
+#[test]
+fn broken_journals_are_refused_with_their_line() {
+    let (_folder, path) = written();
+    let text = std::fs::read_to_string(&path).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    let refused = |lines: &[&str], wanted: &str| {
+        let error = Journal::parse(Path::new("j"), (lines.join("\n") + "\n").as_bytes()).unwrap_err().to_string();
+        assert!(error.contains(wanted) && !error.contains('\n'), "{error}");
+    };
+    refused(&[lines[0], "rubbish", lines[2]], "j:2: not a record");
+    refused(&[lines[1], lines[2]], "j:1: the first line is no run's provenance");
+    refused(&[lines[0], lines[0]], "j:2: a second provenance");
+    refused(&[&lines[0].replace("rtbench/1", "rtbench/9")], "j:1: schema \"rtbench/9\"");
+    assert!(Journal::parse(Path::new("j"), b"").unwrap_err().to_string().contains("empty"));
+    assert!(Journal::read(Path::new("/nowhere/j")).unwrap_err().to_string().contains("/nowhere/j"));
+}
+
+#[test]
+fn a_full_disk_leaves_whole_lines() {
+    if !Path::new("/dev/full").exists() {
+        eprintln!("a_full_disk_leaves_whole_lines did not run: there is no /dev/full");
+        return;
+    }
+    let error = files::replace(Path::new("/dev/full"), b"x").unwrap_err();
+    assert!(matches!(error, Error::Output { .. }) && error.exit_code() == 2, "{error}");
+    assert!(!std::fs::metadata("/dev/full").unwrap().is_file(), "the device node was replaced by a file");
+}
+
+#[test]
+fn headers_are_the_issue_s() {
+    let header = |csv: Vec<u8>| String::from_utf8(csv).unwrap().lines().next().unwrap().to_owned();
+    let device = provenance().device;
+    let rows = [Row::new(&device, &configuration("bvh", Config::PSR))];
+    // With rows and without.
+    for header in [header(summary_csv(&rows).unwrap()), header(summary_csv(&[]).unwrap())] {
+        assert!(header.starts_with(&format!("{SUMMARY},")), "{header}");
+    }
+    let rows = [StructureRow::new(&structure("grid"))];
+    for header in [header(structures_csv(&rows).unwrap()), header(structures_csv(&[]).unwrap())] {
+        assert!(header.starts_with(&format!("{STRUCTURES},")), "{header}");
+    }
+    assert_eq!(structures_csv(&[]).unwrap().iter().filter(|&&b| b == b'\n').count(), 1);
+}
+
+#[test]
+fn csv_json_and_journal_agree() {
+    let (folder, path) = written();
+    let journal = Journal::read(&path).unwrap();
+    let run = Run::new(&journal);
+    run.write(folder.path()).unwrap();
+    let mut csv = csv::Reader::from_path(folder.path().join("summary.csv")).unwrap();
+    let rows: Vec<Row> = csv.deserialize().collect::<Result<_, _>>().unwrap();
+    let text = std::fs::read_to_string(folder.path().join("run.json")).unwrap();
+    let json: Run = serde_json::from_str(&text).unwrap();
+    assert_eq!(rows, json.configurations);
+    assert_eq!(json, run);
+    let mut csv = csv::Reader::from_path(folder.path().join("structures.csv")).unwrap();
+    let structures: Vec<StructureRow> = csv.deserialize().collect::<Result<_, _>>().unwrap();
+    assert_eq!(structures, json.structures);
+    // Derived twice from the same journal: the same bytes.
+    Run::new(&Journal::read(&path).unwrap()).write(folder.path()).unwrap();
+    assert_eq!(std::fs::read_to_string(folder.path().join("run.json")).unwrap(), text);
+
+    // By hand, see `support::configuration`: frames of 2 and 4 ms by the device's clock, 100 + 50 rays.
+    let good = &rows[0];
+    assert_eq!((good.frame_ms_min, good.frame_ms_max, good.frame_ms_mean), (Some(2.0), Some(4.0), Some(3.0)));
+    assert_eq!((good.wall_ms_mean, good.timing_source), (Some(3.3), Some(TimingSource::Device)));
+    assert_eq!(good.mrays_per_s, Some(0.025)); // 150 rays in 6 ms
+    assert_eq!((good.primary_rays, good.shadow_rays, good.reflected_rays), (Some(100), Some(50), Some(0)));
+    assert_eq!((good.primary_steps_per_ray, good.shadow_tests_per_ray), (Some(7.5), Some(2.0)));
+    assert_eq!(good.reflected_steps_per_ray, None);
+    // An error row has no time, even though the record beneath it still holds samples here.
+    let bad = &rows[1];
+    assert!(journal.configurations[1].samples.is_some());
+    assert_eq!((bad.frame_ms_mean, bad.wall_ms_mean, bad.mrays_per_s, bad.timing_source), (None, None, None, None));
+    assert_eq!((bad.status, bad.verified), (Status::Error, false));
+    assert_eq!(bad.message, "3 hits differ, \"quoted\", with a comma");
+}
+
+#[test]
+fn tables_say_what_the_device_is_good_for() {
+    let (_folder, path) = written();
+    let mut run = Run::new(&Journal::read(&path).unwrap());
+    let text = table::run(&run);
+    assert!(text.contains("software rasteriser") && text.contains("do not rank structures for a GPU"), "{text}");
+    assert!(text.contains("ERROR") && text.contains("3 hits differ"), "{text}");
+    run.run.device.device_type = rtbench::backend::DeviceType::DiscreteGpu;
+    assert!(!table::run(&run).contains("do not rank"));
+}
+
+#[test]
+fn the_clock_is_chosen_by_what_it_says() {
+    let samples = |device: Option<Vec<u64>>, wall: Vec<u64>| Samples {
+        pass_ns: vec![wall.iter().sum()],
+        device_ns: device.map(|d| vec![d]),
+        wall_ns: vec![wall],
+    };
+    let choose = |device, wall| measure::choose_source(&samples(device, wall));
+    assert_eq!(choose(Some(vec![100, 100]), vec![105, 105]), (TimingSource::Device, vec![]));
+    assert_eq!(choose(None, vec![105, 105]), (TimingSource::Wall, vec![]));
+    let (source, warnings) = choose(Some(vec![100, 100]), vec![150, 150]);
+    assert_eq!(source, TimingSource::Device);
+    assert!(warnings.len() == 1 && warnings[0].contains("+50 %"), "{warnings:?}");
+    for broken in [vec![0, 100], vec![u64::MAX - 5, 100]] {
+        let (source, warnings) = choose(Some(broken), vec![105, 105]);
+        assert_eq!(source, TimingSource::Wall);
+        assert!(warnings[0].contains("zero or run backwards"), "{warnings:?}");
+    }
+    let slow =
+        Samples { device_ns: None, wall_ns: vec![vec![200], vec![100], vec![101]], pass_ns: vec![200, 100, 101] };
+    assert!(measure::choose_source(&slow).1[0].contains("first pass"));
+    let _ = FrameTime { device_ns: None, wall_ns: 1 };
+}
+
+#[test]
+fn rays_and_hits_as_csv() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("rays.csv");
+    let read = |text: &str| {
+        std::fs::write(&path, text).unwrap();
+        rays::read(&path)
+    };
+    // Any order, further columns, spaces, Windows line ends, a byte order mark.
+    let given = read(
+        "\u{feff}origin_x,note,direction_z,direction_y,direction_x,origin_z,origin_y\r\n1, hello , -1,0,0,3e0,2,extra\r\n",
+    )
+    .unwrap();
+    let wanted = GivenRay { origin: glam::Vec3::new(1.0, 2.0, 3.0), direction: glam::Vec3::new(0.0, 0.0, -1.0) };
+    assert_eq!(given, [wanted]);
+    let head = "origin_x,origin_y,origin_z,direction_x,direction_y,direction_z\n";
+    for (text, problem) in [
+        ("origin_x,origin_y,origin_z,direction_x,direction_y\n1,2,3,4,5\n".into(), ":1: no column direction_z"),
+        (format!("{head}0,0,0,0,0,1\n0,0,zero,0,0,1\n"), ":3: origin_z is \"zero\""),
+        (format!("{head}0,0,0,0,0,1\n0,0,0,0,0\n"), ":3: direction_z is \"\""),
+        (format!("{head}0,0,nan,0,0,1\n"), ":2: origin_z is \"nan\""),
+        (format!("{head}0,0,0,0,0,1e39\n"), ":2: direction_z is \"1e39\""),
+        (format!("{head}0,0,0,0,-0,0\n"), ":2: the direction has no length"),
+        (head.into(), ": no rays"),
+        (String::new(), ":1: no column origin_x"),
+    ] {
+        let error = read(&text).unwrap_err().to_string();
+        assert!(error.contains(problem) && !error.contains('\n'), "{text:?}: {error}");
+    }
+    std::fs::write(&path, b"\xff\xfe\x00").unwrap();
+    assert!(matches!(rays::read(&path), Err(Error::Input(_))));
+    let hits = [Hit { t: 0.1, triangle: 7 }, Hit::NONE, Hit { t: 1.0e-30, triangle: 0 }];
+    let text = rays::to_csv(&hits);
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!((lines[0], lines[1], lines[2]), ("t,triangle", "0.1,7", ",-1"));
+    assert_eq!(lines[3].split(',').next().unwrap().parse::<f32>().unwrap(), 1.0e-30);
+    assert_eq!(Hit::NONE.triangle, MISS);
+}
+
+proptest! {
+    /// Whatever is in the file, reading it ends in rays or in one line.
+    #[test]
+    fn any_bytes_as_rays(bytes in prop::collection::vec(any::<u8>(), 0..200), with_header in any::<bool>()) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rays.csv");
+        let mut content = if with_header { rays::COLUMNS.join(",").into_bytes() } else { Vec::new() };
+        content.push(b'\n');
+        content.extend(bytes);
+        std::fs::write(&path, content).unwrap();
+        if let Err(error) = rays::read(&path) {
+            prop_assert!(!error.to_string().contains('\n'), "{}", error);
+        }
+    }
+}
+
+#[test]
+fn the_colour_map_is_ordered() {
+    let lightness = |[r, g, b, _]: [u8; 4]| {
+        let linear = |c: u8| (f64::from(c) / 255.0).powf(2.2);
+        0.2126 * linear(r) + 0.7152 * linear(g) + 0.0722 * linear(b)
+    };
+    let steps: Vec<f64> = (0..=100).map(|i| lightness(picture::heat(i as f32 / 100.0))).collect();
+    assert!(steps.windows(2).all(|pair| pair[0] < pair[1]), "{steps:?}");
+    assert!(steps[0] < 0.02 && steps[100] > 0.8, "{steps:?}");
+    assert_eq!(picture::heat(f32::NAN), picture::heat(1.0));
+    assert_eq!(picture::heat(-1.0), picture::heat(0.0));
+}
+
+#[test]
+fn names_become_file_names() {
+    assert_eq!(files::slug("llvmpipe (LLVM 15.0.6, 256 bits)"), "llvmpipe-llvm-15.0.6-256-bits");
+    assert_eq!(files::slug("../../etc/passwd"), "etc-passwd");
+    assert!(files::slug(&"x".repeat(1000)).len() <= 80);
+}
+
+#[test]
+fn counters_and_end_are_plain_numbers() {
+    let mut sums = CounterSums::default();
+    let counters = rtbench::backend::Counters { rays: 1, inner: u32::MAX, leaves: 2, tests: 3, pops: 4, restarts: 5 };
+    sums.add(&counters);
+    sums.add(&counters);
+    assert_eq!((sums.rays, sums.steps(), sums.pops), (2, 2 * u64::from(u32::MAX) + 4, 8));
+    let end =
+        End { ended: "now".into(), interrupted: true, complete: false, load_average: [0.5; 3], message: "".into() };
+    let line = serde_json::to_string(&Record::End(end.clone())).unwrap();
+    assert_eq!(serde_json::from_str::<Record>(&line).unwrap(), Record::End(end));
+}
