@@ -12,8 +12,8 @@
 //! | [`backend`] | what a device must be able to do: render, count, time, trace |
 //! | [`cpu`] | a twin of every kernel, with the same names |
 //! | [`gpu`] | wgpu: devices, kernel assembly, uploads, timers. Only here stands a wgpu type |
-//! | [`bench`] | plan, verify, measure, statistics, environment. Only here is a clock read |
-//! | [`results`] | records and their schema, journal, CSV, JSON, tables |
+//! | [`results`] | records and their schema, journal, statistics, CSV, JSON, tables, pictures |
+//! | [`bench`] | plan, verify, measure, environment: writes records. Only here (and in builds) is a clock read |
 //! | [`cli`] | one file per command; only here is anything printed |
 
 pub mod accel;

@@ -224,7 +224,7 @@ fn ctrl_c_in_the_middle() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("run");
     let arguments = format!(
-        "sweep --backend cpu --scene scan:triangles=1000 --frames 400 --passes 1000 --resolution 16,512 \
+        "sweep --backend cpu --scene scan:triangles=1000 --frames 400 --passes 40 --resolution 16,512 \
          --config P --structure bvh-stack --out {}",
         out.display()
     );
