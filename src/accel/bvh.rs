@@ -29,6 +29,11 @@ impl BvhNode {
     /// An empty leaf: the dummy sibling of the root, and the root of an empty scene. Its box contains nothing.
     pub const NONE: BvhNode = BvhNode { min: [f32::MAX; 3], first: 0, max: [f32::MIN; 3], count: 0 };
 
+    /// The node's box.
+    pub fn aabb(&self) -> Aabb {
+        Aabb { min: self.min.into(), max: self.max.into() }
+    }
+
     /// Both corners, loaded as 16-byte rows (see [`crate::math::Ray`] on the hidden fourth lane).
     #[inline(always)]
     pub fn corners(&self) -> (Vec3A, Vec3A) {

@@ -46,11 +46,7 @@ pub fn build(scene: &Scene, config: &Config) -> Result<Bvh> {
     let part = builder.grow(&mut items, &mut scratch, 0, rows, 0);
     drop(scratch);
     let depth = part.depth;
-    let records = items
-        .par_iter()
-        .with_min_len(CHUNK)
-        .map(|item| prims::record(scene, item.prim.triangle()))
-        .collect();
+    let records = items.par_iter().with_min_len(CHUNK).map(|item| prims::record(scene, item.prim.triangle())).collect();
     Ok(Bvh { bounds, nodes: part.into_nodes(), records, depth })
 }
 
@@ -233,4 +229,3 @@ impl BvhNode {
         if self.count == 0 { BvhNode { first: self.first + base, ..self } } else { self }
     }
 }
-

@@ -27,6 +27,29 @@ pub struct KdTree {
     pub depth: u32,
 }
 
+impl KdTree {
+    /// Calls `visit` with every node, its cell and its depth, in the order of the nodes.
+    ///
+    /// Follows right links only upwards and only inside the node array, so that it ends on any input.
+    pub fn for_each_cell(&self, mut visit: impl FnMut(KdNode, &Aabb, u32)) {
+        let mut waiting = vec![(0, self.bounds, 0)];
+        while let Some((index, cell, depth)) = waiting.pop() {
+            let Some(&node) = self.nodes.get(index as usize) else { continue };
+            visit(node, &cell, depth);
+            if node.is_leaf() {
+                continue;
+            }
+            let (mut left, mut right) = (cell, cell);
+            left.max[node.axis()] = node.split();
+            right.min[node.axis()] = node.split();
+            if node.right() > index {
+                waiting.push((node.right(), right, depth + 1));
+            }
+            waiting.push((index + 1, left, depth + 1));
+        }
+    }
+}
+
 impl KdNode {
     /// A leaf.
     pub fn leaf(first: u32, count: u32) -> KdNode {

@@ -1,15 +1,28 @@
 //! Acceleration structures: what they look like in memory, who builds them, how they are checked.
 //!
 //! A structure is independent of the traversal that walks it: the same [`bvh::Bvh`] serves the packet and the stack
-//! traversal. [`Variant`] names a pair of builder and traversal, which is what a table's row measures.
+//! traversal. [`VariantInfo`] names a pair of builder and traversal, which is what a table's row measures.
 
+pub mod brute;
 pub mod bvh;
 mod bvh_bins;
 pub mod bvh_build;
+mod check;
 pub mod grid;
+pub mod grid_build;
 pub mod kdtree;
 pub mod octants;
+mod kdtree_bins;
+pub mod kdtree_build;
+mod kdtree_exact;
+pub mod ploc;
 pub mod prims;
+mod properties;
+mod registry;
+pub mod sah;
+
+pub use properties::Properties;
+pub use registry::{Built, MAX_THREADS, OptionInfo, Selection, VariantInfo, variants};
 
 use crate::math::Aabb;
 use bytemuck::{Pod, Zeroable};

@@ -95,9 +95,7 @@ pub fn bounds(prims: &[Prim]) -> Aabb {
         chunk.iter().fold(start, |(min, max), p| (min.min(p.min), max.max(p.max)))
     };
     let boxes: Vec<_> = prims.par_chunks(CHUNK).map(around).collect();
-    boxes
-        .into_iter()
-        .fold(Aabb::EMPTY, |b, (min, max)| b.union(Aabb { min: min.truncate(), max: max.truncate() }))
+    boxes.into_iter().fold(Aabb::EMPTY, |b, (min, max)| b.union(Aabb { min: min.truncate(), max: max.truncate() }))
 }
 
 /// The record of triangle `index`.

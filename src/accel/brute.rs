@@ -1,0 +1,11 @@
+//! No structure: all triangles in one run.
+
+use super::{Brute, prims};
+use crate::error::Result;
+use crate::scene::Scene;
+
+/// Lists all triangles that can be hit, in scene order.
+pub fn build(scene: &Scene) -> Result<Brute> {
+    let prims = prims::prims(scene)?;
+    Ok(Brute { bounds: prims::bounds(&prims), records: prims::records(scene, &prims) })
+}
