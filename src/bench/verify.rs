@@ -180,7 +180,8 @@ impl<'a> Verifier<'a> {
     /// checked, and for how many the answer differs.
     fn check_by_brute_force(&self, answers: &Answers, config: Config, view: &View, size: Size) -> Result<(u64, u64)> {
         // The same primary rays have been checked for another configuration
-        let known = self.references.iter().find(|r| r.size == size && r.view.camera == view.camera && r.config != config);
+        let known =
+            self.references.iter().find(|r| r.size == size && r.view.camera == view.camera && r.config != config);
         if let Some(known) = known {
             return Ok((known.brute_checked, known.brute_differing));
         }

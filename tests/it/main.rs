@@ -7,5 +7,6 @@ mod kernels; // every kernel variant through naga, struct layouts, no GPU
 mod reference; // rays traced by Embree (needs RTBENCH_SCENES)
 mod results; // journal, CSV and JSON agree; statistics
 mod scene; // PLY of every kind, broken PLY of every kind, procedural scenes
+mod support; // small scenes, random numbers, the GPU if there is one
 mod traversal; // every traversal against brute force, CPU twins and GPU
 mod verify; // the verifier notices one wrong pixel

@@ -1,0 +1,90 @@
+//! What several modules need: small scenes, random numbers, the GPU if there is one, files of others.
+
+use glam::Vec3;
+use rtbench::gpu::{GpuBackend, GpuOptions, Selector};
+use rtbench::math::Vertex;
+use rtbench::scene::{Light, Material, Scene, Triangle};
+use std::path::PathBuf;
+use std::sync::OnceLock;
+
+/// Numbers between -1 and 1 from a small generator of our own: the same on every machine.
+pub fn random(seed: u32) -> impl FnMut() -> f32 {
+    let mut state = seed.wrapping_mul(0x9e37_79b9) ^ 0x85eb_ca6b;
+    move || {
+        state ^= state << 13;
+        state ^= state >> 17;
+        state ^= state << 5;
+        (state >> 8) as f32 / 8_388_608.0 - 1.0
+    }
+}
+
+/// Random triangles in the box from -1 to 1, some of them without area or twice the same. Flat ones lie in the planes
+/// of a lattice, many at exactly equal distances from a ray.
+pub fn soup(triangles: usize, seed: u32, flat: bool) -> Scene {
+    let mut random = random(seed);
+    let mut scene = Scene { name: format!("soup-{triangles}-{seed}"), ..Scene::default() };
+    let size = (8.0 / (triangles as f32).sqrt()).clamp(0.02, 0.8);
+    for index in 0..triangles {
+        let mut point = |scale: f32| Vec3::new(random(), random(), random()) * scale;
+        let center = point(1.0);
+        let mut corners = [center, center + point(size), center + point(size)];
+        if flat {
+            corners = corners.map(|p| (p * 4.0).round() / 4.0);
+            let axis = index % 3;
+            corners[1][axis] = corners[0][axis];
+            corners[2][axis] = corners[0][axis];
+        }
+        if index % 29 == 7 {
+            corners[2] = corners[1];
+        }
+        let first = scene.vertices.len() as u32;
+        scene.vertices.extend(corners.map(|p| Vertex::new(p, Vec3::ZERO)));
+        scene.triangles.push(Triangle { vertices: [first, first + 1, first + 2], material: 0 });
+        if index % 31 == 11 {
+            scene.triangles.push(Triangle { vertices: [first + 2, first, first + 1], material: 0 });
+        }
+    }
+    scene.materials.push(Material::matt(Vec3::splat(0.7)));
+    scene.lights.push(Light::new(Vec3::new(2.0, 3.0, 1.0), Vec3::ONE));
+    scene.background = Vec3::new(0.1, 0.1, 0.2);
+    scene
+}
+
+fn open(options: GpuOptions) -> Option<GpuBackend> {
+    match GpuBackend::open(&Selector::Best, options) {
+        Ok(gpu) => Some(gpu),
+        // CI sets RTBENCH_REQUIRE_GPU, so that a missing driver cannot pass for a passed test
+        Err(error) if std::env::var_os("RTBENCH_REQUIRE_GPU").is_none() => {
+            eprintln!("not run: {error}");
+            None
+        }
+        Err(error) => panic!("RTBENCH_REQUIRE_GPU is set, but {error}"),
+    }
+}
+
+/// The best Vulkan device, one for all tests so that kernels are compiled once; without one, says so and returns
+/// nothing.
+pub fn gpu() -> Option<&'static GpuBackend> {
+    static GPU: OnceLock<Option<GpuBackend>> = OnceLock::new();
+    let gpu = GPU.get_or_init(|| open(GpuOptions::default())).as_ref();
+    if gpu.is_none() {
+        eprintln!("not run: needs a Vulkan device");
+    }
+    gpu
+}
+
+/// A device of one's own, with or without wgpu's shader checks.
+pub fn own_gpu(checked: bool) -> Option<GpuBackend> {
+    open(GpuOptions { checked, ..GpuOptions::default() })
+}
+
+/// A file below the folder named by an environment variable; without it, says so and returns nothing.
+pub fn file_below(variable: &str, path: &str) -> Option<PathBuf> {
+    let Some(folder) = std::env::var_os(variable) else {
+        eprintln!("not run: {variable} is not set; it names the folder with {path}");
+        return None;
+    };
+    let file = PathBuf::from(folder).join(path);
+    assert!(file.exists(), "{variable} is set, but {} does not exist", file.display());
+    Some(file)
+}
