@@ -2,12 +2,17 @@
 
 //!include lib/alone.wgsl
 
+// Two loops, because software drivers end a single one after 65,535 turns (lavapipe), taking it for endless.
+const RUN: u32 = 32768u;
+
 fn nearest_hit(ray: Ray, alive: bool) -> u32 {
     var best = no_best();
     if (alive) {
-        for (var i = 0u; i < structure.records; i += 1u) {
-            count_test();
-            test_record(ray, i, &best);
+        for (var first = 0u; first < structure.records; first += RUN) {
+            for (var i = first; i < min(first + RUN, structure.records); i += 1u) {
+                count_test();
+                test_record(ray, i, &best);
+            }
         }
     }
     return best.record;
@@ -15,10 +20,12 @@ fn nearest_hit(ray: Ray, alive: bool) -> u32 {
 
 fn any_hit(ray: Ray, limit: f32, alive: bool) -> bool {
     if (alive) {
-        for (var i = 0u; i < structure.records; i += 1u) {
-            count_test();
-            if (record_blocks(ray, i, limit)) {
-                return true;
+        for (var first = 0u; first < structure.records; first += RUN) {
+            for (var i = first; i < min(first + RUN, structure.records); i += 1u) {
+                count_test();
+                if (record_blocks(ray, i, limit)) {
+                    return true;
+                }
             }
         }
     }

@@ -1,24 +1,39 @@
-//! kd-tree builder (SPEC section 3).
+//! kd-tree builder: top down, greedy SAH on boxes; binned above, exact below (SPEC section 3).
+//!
+//! A triangle goes to every side that its box reaches into. A box that merely touches the plane stays on its own side,
+//! and one that lies in the plane goes to the cheaper side. No plane ever lies on the border of the cell that it
+//! splits, so no cell is flat unless the whole scene is.
 
 use super::kdtree::{KdNode, KdTree};
-use super::prims;
-use super::sah::CostModel;
-use crate::error::Result;
+use super::kdtree_bins;
+use super::kdtree_exact;
+use super::prims::{self, Prim};
+use super::sah::{CostModel, half_area};
+use super::{Record, prims::record};
+use crate::error::{Error, Result};
+use crate::math::Aabb;
 use crate::scene::Scene;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// No tree is deeper than this, whatever is set.
 pub const MAX_DEPTH: u32 = 60;
 
+/// Most leaves and records together: links have 30 bits, and a device's buffers are smaller still.
+pub const MAX_LEAVES_AND_RECORDS: usize = 1 << 28;
+
+/// Sides with fewer triangles than this together are built one after the other.
+const TASK: usize = 2048;
+
 /// What can be set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
-    /// Bins per axis in the upper levels.
+    /// Bins per axis in the upper levels, 2 to 64.
     pub bins: usize,
     /// Nodes with fewer triangles are split by the exact sweep.
     pub exact_below: usize,
     /// `K_t` and `K_i`.
     pub cost: CostModel,
-    /// Greatest depth; `None` is `8 + 1.3 log2(triangles)`.
+    /// Greatest depth, at most [`MAX_DEPTH`]; `None` is `8 + 1.3 log2(triangles)`.
     pub max_depth: Option<u32>,
 }
 
@@ -29,10 +44,191 @@ impl Default for Config {
     }
 }
 
-/// Builds a kd-tree over all triangles that can be hit.
-pub fn build(scene: &Scene, _config: &Config) -> Result<KdTree> {
+/// A plane that splits a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Split {
+    pub axis: usize,
+    pub plane: f32,
+    /// Side of the triangles that lie in the plane.
+    pub planar_left: bool,
+    /// Triangles on the left, planar ones included where they go there.
+    pub left: usize,
+    /// Triangles on the right, likewise.
+    pub right: usize,
+    /// `A_left N_left + A_right N_right`, half areas.
+    pub weighted: f64,
+}
+
+/// Rules and budget, shared by all threads.
+pub(super) struct Builder {
+    pub config: Config,
+    pub max_depth: u32,
+    spent: AtomicUsize,
+}
+
+impl Builder {
+    /// True if a node must be a leaf, whatever its splits would cost.
+    pub fn must_stop(&self, triangles: usize, depth: u32) -> bool {
+        let cost = &self.config.cost;
+        depth >= self.max_depth || cost.leaf(triangles as u32) <= cost.traversal || self.is_broke()
+    }
+
+    /// True if splitting a cell is cheaper than testing its triangles.
+    pub fn pays(&self, cell: &Aabb, triangles: usize, split: &Split) -> bool {
+        let cost = &self.config.cost;
+        let area = half_area(cell);
+        area > 0.0 && cost.traversal + cost.intersection * split.weighted / area < cost.leaf(triangles as u32)
+    }
+
+    /// Accounts for a leaf.
+    pub fn spend(&self, triangles: usize) {
+        self.spent.fetch_add(1 + triangles, Relaxed);
+    }
+
+    fn is_broke(&self) -> bool {
+        self.spent.load(Relaxed) > MAX_LEAVES_AND_RECORDS
+    }
+
+    fn grow(&self, prims: Vec<Prim>, cell: Aabb, depth: u32) -> Part {
+        let count = prims.len();
+        if count < self.config.exact_below {
+            return Part::Subtree(kdtree_exact::build(self, &prims, cell, depth));
+        }
+        let split = if self.must_stop(count, depth) {
+            None
+        } else {
+            kdtree_bins::find(&prims, &cell, self.config.bins).filter(|split| self.pays(&cell, count, split))
+        };
+        let Some(split) = split else {
+            self.spend(count);
+            return Part::Subtree(Subtree::leaf(&prims));
+        };
+        let (left, right) = divide(&prims, &split);
+        drop(prims);
+        let (left_cell, right_cell) = halves(&cell, &split);
+        let a = || self.grow(left, left_cell, depth + 1);
+        let b = || self.grow(right, right_cell, depth + 1);
+        let parts = if split.left + split.right > TASK { rayon::join(a, b) } else { (a(), b()) };
+        Part::Inner(split.axis, split.plane, Box::new(parts))
+    }
+}
+
+/// Both sides' triangles, in their order.
+fn divide(prims: &[Prim], split: &Split) -> (Vec<Prim>, Vec<Prim>) {
+    let mut left = Vec::with_capacity(split.left);
+    let mut right = Vec::with_capacity(split.right);
+    let Split { axis, plane, planar_left, .. } = *split;
+    for prim in prims {
+        let (min, max) = (prim.min[axis], prim.max[axis]);
+        let planar = min == plane && max == plane;
+        if min < plane || (planar && planar_left) {
+            left.push(*prim);
+        }
+        if max > plane || (planar && !planar_left) {
+            right.push(*prim);
+        }
+    }
+    debug_assert_eq!((left.len(), right.len()), (split.left, split.right));
+    (left, right)
+}
+
+/// The cells on both sides of a plane.
+pub(super) fn halves(cell: &Aabb, split: &Split) -> (Aabb, Aabb) {
+    let (mut left, mut right) = (*cell, *cell);
+    left.max[split.axis] = split.plane;
+    right.min[split.axis] = split.plane;
+    (left, right)
+}
+
+/// A finished subtree in depth-first order: links count from its first node, leaves from its first triangle.
+#[derive(Default)]
+pub(super) struct Subtree {
+    pub nodes: Vec<KdNode>,
+    /// Triangles, leaf by leaf.
+    pub triangles: Vec<u32>,
+    /// Levels of inner nodes.
+    pub depth: u32,
+}
+
+impl Subtree {
+    fn leaf(prims: &[Prim]) -> Subtree {
+        let triangles: Vec<u32> = prims.iter().map(Prim::triangle).collect();
+        Subtree { nodes: vec![KdNode::leaf(0, triangles.len() as u32)], triangles, depth: 0 }
+    }
+}
+
+enum Part {
+    Subtree(Subtree),
+    Inner(usize, f32, Box<(Part, Part)>),
+}
+
+impl Part {
+    /// Numbers of nodes and of records, and depth.
+    fn size(&self) -> (usize, usize, u32) {
+        match self {
+            Part::Subtree(s) => (s.nodes.len(), s.triangles.len(), s.depth),
+            Part::Inner(_, _, parts) => {
+                let (a, b) = (parts.0.size(), parts.1.size());
+                (1 + a.0 + b.0, a.1 + b.1, 1 + a.2.max(b.2))
+            }
+        }
+    }
+
+    /// Writes this part, whose first node is number `node` and whose first record is number `record` of the tree.
+    fn place(self, scene: &Scene, nodes: &mut [KdNode], records: &mut [Record], node: u32, first: u32) {
+        match self {
+            Part::Subtree(s) => {
+                for (out, own) in nodes.iter_mut().zip(&s.nodes) {
+                    *out = own.moved(node, first);
+                }
+                for (out, &triangle) in records.iter_mut().zip(&s.triangles) {
+                    *out = record(scene, triangle);
+                }
+            }
+            Part::Inner(axis, plane, parts) => {
+                let (left, right) = *parts;
+                let (left_nodes, left_records, _) = left.size();
+                let right_node = node + 1 + left_nodes as u32;
+                nodes[0] = KdNode::inner(axis as u32, plane, right_node);
+                let (a, b) = nodes[1..].split_at_mut(left_nodes);
+                let (c, d) = records.split_at_mut(left_records);
+                rayon::join(
+                    || left.place(scene, a, c, node + 1, first),
+                    || right.place(scene, b, d, right_node, first + left_records as u32),
+                );
+            }
+        }
+    }
+}
+
+impl KdNode {
+    fn moved(self, nodes: u32, records: u32) -> KdNode {
+        if self.is_leaf() {
+            KdNode::leaf(self.first() + records, self.count())
+        } else {
+            KdNode { link: self.link + (nodes << 2), ..self }
+        }
+    }
+}
+
+/// Builds a kd-tree over all triangles that can be hit, on the threads of the current rayon pool.
+pub fn build(scene: &Scene, config: &Config) -> Result<KdTree> {
     let prims = prims::prims(scene)?;
     let bounds = prims::bounds(&prims);
-    let records = prims::records(scene, &prims);
-    Ok(KdTree { bounds, nodes: vec![KdNode::leaf(0, records.len() as u32)], records, depth: 0 })
+    let automatic = (8.0 + 1.3 * (prims.len().max(1) as f64).log2()).round() as u32;
+    let max_depth = config.max_depth.unwrap_or(automatic).min(MAX_DEPTH);
+    let builder = Builder { config: *config, max_depth, spent: AtomicUsize::new(0) };
+    let part = builder.grow(prims, bounds, 0);
+    if builder.is_broke() {
+        return Err(Error::argument(
+            format!("kdtree over {}", scene.name),
+            format!("takes more than {MAX_LEAVES_AND_RECORDS} leaves and records"),
+            "set a higher kt or a smaller max_depth",
+        ));
+    }
+    let (node_count, record_count, depth) = part.size();
+    let mut nodes = vec![KdNode::leaf(0, 0); node_count];
+    let mut records = vec![Record { vertices: [0; 3], triangle: 0 }; record_count];
+    part.place(scene, &mut nodes, &mut records, 0, 0);
+    Ok(KdTree { bounds, nodes, records, depth })
 }

@@ -1,10 +1,44 @@
 //! Verification before timing: what a kernel finds is compared with a reference that brute force has checked.
+//!
+//! The reference is the CPU twin of `bvh-stack`; rays of it are confirmed by testing every triangle, as many as fit
+//! [`BRUTE_TESTS`]. Because all traversals agree to the bit ([`crate::math`]), one reference serves all structures.
+//!
+//! **Limits.** Where device and twins compute alike ([`crate::backend::DeviceInfo::is_exact`]), triangles, distances,
+//! counters and the timed kernel's agreement with the counting kernel's are compared to the bit; only colours may
+//! differ, by [`COLOUR_LEVELS`], because `pow` is a library's on one side and a driver's on the other. Other devices may
+//! contract multiplications and additions and approximate divisions: a ray that passes within rounding of an edge can
+//! find the neighbouring triangle, or slip between two. Such rays lie along edges, so that their share is about the
+//! width of rounding over the width of a triangle in the image; [`HIT_SHARE`] is far above that and far below any wrong
+//! kernel. What really differs is recorded with every row.
 
-use crate::accel::{Structure, Traversal, bvh::Bvh};
-use crate::backend::{Config, Prepared, Size};
+use crate::accel::brute;
+use crate::accel::{Structure, Traversal};
+use crate::backend::{Backend, Config, CountedPixel, GivenRay, Pixel, PixelCounters, Prepared, Size};
 use crate::camera::View;
-use crate::error::Result;
+use crate::cpu::{CpuBackend, render};
+use crate::error::{Error, Result};
 use crate::scene::Scene;
+
+/// A colour channel may differ by this many of 255 levels: `pow` of both sides is good to a few units in the last place,
+/// which moves a rounded channel by one level, and a reflection may add another.
+pub const COLOUR_LEVELS: u8 = 2;
+
+/// Share of the primary rays whose triangle may differ on a device that is not exact.
+pub const HIT_SHARE: f64 = 1.0e-3;
+
+/// Share of the pixels whose colour may differ by more than [`COLOUR_LEVELS`] on a device that is not exact: a shadow
+/// ray that just misses an edge changes a whole pixel, and a pixel has several.
+pub const COLOUR_SHARE: f64 = 5.0e-3;
+
+/// Share of the pixels whose counters may differ on a device that is not exact: an interval that rounds differently
+/// swaps two children of equal distance. In a packet one such ray can change the counts of all 64.
+pub const COUNTER_SHARE: f64 = 5.0e-2;
+
+/// Relative difference of distances up to which they count as the same on a device that is not exact.
+pub const DISTANCE_SLACK: f32 = 1.0e-4;
+
+/// Ray/triangle tests that brute force may spend on one view and size: about half a second on two cores.
+pub const BRUTE_TESTS: usize = 1 << 26;
 
 /// The outcome of verifying one configuration at one size.
 #[derive(Clone, Debug)]
@@ -19,7 +53,7 @@ pub struct Verdict {
     pub brute_checked: u64,
     /// Primary rays whose triangle or distance differs.
     pub hits_differing: u64,
-    /// Pixels whose steps, tests or restarts differ from the CPU twin's (0 where they were not compared).
+    /// Pixels whose steps, tests, pops or restarts differ from the CPU twin's (0 where they were not compared).
     pub counters_differing: u64,
     /// Pixels whose colour differs by more than the stated amount.
     pub colours_differing: u64,
@@ -34,50 +68,252 @@ pub struct Verdict {
     pub difference: Option<Vec<u8>>,
 }
 
+/// Pixels of one frame with what the counting kernels add.
+struct Answers {
+    pixels: Vec<Pixel>,
+    /// Distances of the primary hits; empty where they are not known.
+    distances: Vec<f32>,
+    /// Empty where they are not known.
+    counters: Vec<PixelCounters>,
+}
+
+impl Answers {
+    fn counted(prepared: &mut dyn Prepared, config: Config, view: &View, size: Size) -> Result<Answers> {
+        let mut answers = Answers { pixels: Vec::new(), distances: Vec::new(), counters: Vec::new() };
+        prepared.counted(config, view, size, &mut |_, band: &[CountedPixel]| {
+            answers.pixels.extend(band.iter().map(|p| p.pixel));
+            answers.distances.extend(band.iter().map(|p| f32::from_bits(p.t)));
+            answers.counters.extend(band.iter().map(|p| p.counters));
+        })?;
+        Ok(answers)
+    }
+}
+
+/// A reference image and how much of it brute force has confirmed.
+struct Reference {
+    config: Config,
+    view: View,
+    size: Size,
+    answers: Answers,
+    brute_checked: u64,
+    /// Rays for which brute force found something else: then the reference is no reference.
+    brute_differing: u64,
+}
+
 /// Verifies all configurations of one scene; keeps the references it has computed.
 pub struct Verifier<'a> {
     scene: &'a Scene,
-    bvh: &'a Bvh,
+    cpu: CpuBackend,
+    tree: &'a Structure,
+    brute: Structure,
+    references: Vec<Reference>,
+}
+
+/// Which pixels differ, and how.
+struct Differences {
+    hits: Vec<bool>,
+    counters: Vec<bool>,
+    colours: Vec<bool>,
+    max_colour: u8,
 }
 
 impl<'a> Verifier<'a> {
-    /// A verifier whose reference is traced through `bvh` by the CPU twin and checked by brute force.
-    pub fn new(scene: &'a Scene, bvh: &'a Bvh) -> Self {
-        Verifier { scene, bvh }
+    /// A verifier whose reference is traced through `tree`, a BVH, by the CPU twin and checked by brute force.
+    ///
+    /// # Errors
+    /// [`Error::Device`] if no threads can be started.
+    pub fn new(scene: &'a Scene, tree: &'a Structure) -> Result<Self> {
+        let brute = Structure::Brute(brute::build(scene)?);
+        Ok(Verifier { scene, cpu: CpuBackend::new(0)?, tree, brute, references: Vec::new() })
     }
 
     /// Verifies one frame. With `twin`, hits and counters are also compared with the CPU twin of the same structure and
     /// traversal, pixel by pixel (for small images); without, only with the reference image. `exact` demands agreement
     /// to the bit (see [`crate::backend::DeviceInfo::is_exact`]).
-    #[allow(clippy::too_many_arguments)]
+    ///
+    /// # Errors
+    /// Those of the device. A disagreement is no error but a verdict.
     pub fn check(
         &mut self,
         prepared: &mut dyn Prepared,
-        _twin: Option<(&Structure, Traversal)>,
+        twin: Option<(&Structure, Traversal)>,
         config: Config,
         view: &View,
         size: Size,
-        _exact: bool,
+        exact: bool,
     ) -> Result<Verdict> {
-        use crate::backend::Backend;
-        let structure = Structure::Bvh(self.bvh.clone());
-        let cpu = crate::cpu::CpuBackend::new(0)?;
-        let reference = cpu.prepare(self.scene, &structure, Traversal::BvhStack)?.image(config, view, size)?;
-        let pixels = prepared.image(config, view, size)?;
-        let image: Vec<u8> = pixels.iter().flat_map(|p| p.rgba.to_le_bytes()).collect();
-        let bad = pixels.iter().zip(&reference).filter(|(p, r)| p.triangle != r.triangle).count() as u64;
-        Ok(Verdict {
-            ok: bad == 0,
-            message: if bad == 0 { "ok".into() } else { format!("{bad} hits differ") },
-            rays: size.pixels() as u64,
-            brute_checked: 0,
-            hits_differing: bad,
-            counters_differing: 0,
-            colours_differing: 0,
-            max_colour_difference: 0,
-            image_hash: blake3::hash(&image).to_hex().to_string(),
-            difference: (bad > 0).then(|| image.clone()),
-            image,
-        })
+        let timed = prepared.image(config, view, size)?;
+        let found = match twin {
+            Some(_) => Answers::counted(prepared, config, view, size)?,
+            None => Answers { pixels: timed.clone(), distances: Vec::new(), counters: Vec::new() },
+        };
+        let own = match twin {
+            Some((structure, traversal)) => {
+                let mut twin = self.cpu.prepare(self.scene, structure, traversal)?;
+                Some(Answers::counted(twin.as_mut(), config, view, size)?)
+            }
+            None => None,
+        };
+        let reference = self.reference(config, view, size)?;
+        Ok(judge(&timed, &found, own.as_ref(), reference, exact))
+    }
+
+    /// The reference for a view; computed the first time.
+    fn reference(&mut self, config: Config, view: &View, size: Size) -> Result<&Reference> {
+        let place = self.references.iter().position(|r| r.config == config && r.size == size && r.view == *view);
+        let place = match place {
+            Some(place) => place,
+            None => {
+                let mut twin = self.cpu.prepare(self.scene, self.tree, Traversal::BvhStack)?;
+                let mut answers = Answers::counted(twin.as_mut(), config, view, size)?;
+                answers.counters = Vec::new();
+                let (brute_checked, brute_differing) = self.check_by_brute_force(&answers, config, view, size)?;
+                let view = view.clone();
+                self.references.push(Reference { config, view, size, answers, brute_checked, brute_differing });
+                self.references.len() - 1
+            }
+        };
+        Ok(&self.references[place])
+    }
+
+    /// Tests every triangle for as many primary rays, evenly spread, as [`BRUTE_TESTS`] allows: how many rays were
+    /// checked, and for how many the answer differs.
+    fn check_by_brute_force(&self, answers: &Answers, config: Config, view: &View, size: Size) -> Result<(u64, u64)> {
+        // The same primary rays have been checked for another configuration
+        let known =
+            self.references.iter().find(|r| r.size == size && r.view.camera == view.camera && r.config != config);
+        if let Some(known) = known {
+            return Ok((known.brute_checked, known.brute_differing));
+        }
+        let rays = (BRUTE_TESTS / self.scene.triangles.len().max(1)).clamp(64, size.pixels().max(1)).min(size.pixels());
+        let chosen: Vec<usize> = (0..rays).map(|i| (i as u64 * size.pixels() as u64 / rays as u64) as usize).collect();
+        let given: Vec<GivenRay> = chosen.iter().map(|&pixel| render::primary_ray(view, size, pixel)).collect();
+        let hits = self.cpu.prepare(self.scene, &self.brute, Traversal::Brute)?.trace(&given, false)?;
+        let differing = hits.iter().zip(&chosen).filter(|&(hit, &pixel)| {
+            hit.triangle != answers.pixels[pixel].triangle || hit.t.to_bits() != answers.distances[pixel].to_bits()
+        });
+        Ok((rays as u64, differing.count() as u64))
+    }
+}
+
+/// Compares the timed kernel's pixels, the counting kernel's answers and the twin's with the reference.
+fn judge(timed: &[Pixel], found: &Answers, twin: Option<&Answers>, reference: &Reference, exact: bool) -> Verdict {
+    let pixels = reference.size.pixels();
+    let image: Vec<u8> = timed.iter().flat_map(|p| p.rgba.to_le_bytes()).collect();
+    let kernels_differing = timed.iter().zip(&found.pixels).filter(|(a, b)| a != b).count();
+    let mut differences = Differences {
+        hits: vec![false; pixels],
+        counters: vec![false; pixels],
+        colours: vec![false; pixels],
+        max_colour: 0,
+    };
+    // The reference has been checked by brute force; the twin of the same structure must agree with it as well
+    differences.hits_against(&reference.answers, timed, found, exact);
+    if let Some(twin) = twin {
+        differences.hits_against(twin, timed, found, exact);
+        for (index, (a, b)) in twin.counters.iter().zip(&found.counters).enumerate() {
+            differences.counters[index] = a != b;
+        }
+    }
+    differences.colours_against(&reference.answers, timed);
+
+    let count = |set: &[bool]| set.iter().filter(|&&differs| differs).count() as u64;
+    let (hits, counters) = (count(&differences.hits), count(&differences.counters));
+    let colours = count(&differences.colours);
+    let allowed = |share: f64| if exact { 0 } else { (share * pixels as f64).ceil() as u64 };
+    let mut problems = Vec::new();
+    let mut demand = |differing: u64, share: f64, what: &str| {
+        if differing > allowed(share) {
+            problems.push(format!("{differing} of {pixels} {what} (allowed: {})", allowed(share)));
+        }
+    };
+    demand(reference.brute_differing, 0.0, "rays of the reference itself differ from brute force");
+    demand(hits, HIT_SHARE, "primary rays hit another triangle or at another distance");
+    demand(counters, COUNTER_SHARE, "pixels count other steps or tests than the CPU twin");
+    demand(colours, COLOUR_SHARE, &format!("colours differ by more than {COLOUR_LEVELS} levels of 255"));
+    demand(kernels_differing as u64, HIT_SHARE, "pixels of the counting kernel differ from the timed kernel's");
+    if timed.len() != pixels || found.pixels.len() != pixels {
+        problems.push(format!("the image has {} pixels instead of {pixels}", timed.len()));
+    }
+
+    let ok = problems.is_empty();
+    let message = match ok {
+        true => format!(
+            "{pixels} primary rays agree with the reference{}, {} of them checked by brute force",
+            if twin.is_some() { " and the twin's counters" } else { "" },
+            reference.brute_checked
+        ),
+        false => problems.join("; "),
+    };
+    let difference = (!ok).then(|| differences.picture(&image, pixels));
+    Verdict {
+        ok,
+        message,
+        rays: pixels as u64,
+        brute_checked: reference.brute_checked,
+        hits_differing: hits,
+        counters_differing: counters,
+        colours_differing: colours,
+        max_colour_difference: differences.max_colour,
+        image_hash: blake3::hash(&image).to_hex().to_string(),
+        image,
+        difference,
+    }
+}
+
+impl Differences {
+    fn hits_against(&mut self, expected: &Answers, timed: &[Pixel], found: &Answers, exact: bool) {
+        for (index, differs) in self.hits.iter_mut().enumerate() {
+            let right = expected.pixels[index].triangle;
+            let pixels = [timed.get(index), found.pixels.get(index)];
+            let triangles_differ = pixels.iter().any(|p| p.is_none_or(|p| p.triangle != right));
+            let far_off = match (found.distances.get(index), expected.distances.get(index)) {
+                (Some(a), Some(b)) if exact => a.to_bits() != b.to_bits(),
+                (Some(a), Some(b)) => !((a - b).abs() <= DISTANCE_SLACK * b.abs()),
+                _ => false,
+            };
+            *differs |= triangles_differ || far_off;
+        }
+    }
+
+    fn colours_against(&mut self, expected: &Answers, timed: &[Pixel]) {
+        for (index, (a, b)) in expected.pixels.iter().zip(timed).enumerate() {
+            let channels = a.rgba.to_le_bytes().into_iter().zip(b.rgba.to_le_bytes());
+            let worst = channels.map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0);
+            self.max_colour = self.max_colour.max(worst);
+            self.colours[index] = worst > COLOUR_LEVELS;
+        }
+    }
+
+    fn picture(&self, image: &[u8], pixels: usize) -> Vec<u8> {
+        let mut picture = vec![0; pixels * 4];
+        for (index, out) in picture.chunks_exact_mut(4).enumerate() {
+            let colour = if self.hits[index] {
+                [255, 0, 0, 255]
+            } else if self.counters[index] {
+                [255, 220, 0, 255]
+            } else if self.colours[index] {
+                [40, 90, 255, 255]
+            } else {
+                let shade = |channel: usize| image.get(index * 4 + channel).copied().unwrap_or(0) / 3;
+                [shade(0), shade(1), shade(2), 255]
+            };
+            out.copy_from_slice(&colour);
+        }
+        picture
+    }
+}
+
+/// Refuses sizes whose images do not fit into memory sensibly: more than 2^28 pixels.
+///
+/// # Errors
+/// [`Error::Input`], naming the flag.
+pub fn check_size(size: Size) -> Result<()> {
+    match size.pixels() {
+        0 => Err(Error::argument("--resolution", "an image needs at least one pixel", "for example 256 or 640x480")),
+        pixels if pixels > 1 << 28 => {
+            Err(Error::argument("--resolution", format!("{pixels} pixels are too many"), "at most 16384x16384"))
+        }
+        _ => Ok(()),
     }
 }

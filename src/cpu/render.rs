@@ -4,7 +4,7 @@
 use super::count::Count;
 use super::shade::{Surface, phong, reflected_ray, rgba8, surface_at, unit};
 use super::traverse::{GROUP, Lanes, Traverse, Triangles, bits};
-use crate::backend::{Config, CountedPixel, Pixel, Size};
+use crate::backend::{Config, CountedPixel, GivenRay, Pixel, Size};
 use crate::camera::{PixelGrid, View};
 use crate::math::{MISS, Ray, T_MAX};
 use crate::scene::{Light, Scene};
@@ -34,6 +34,19 @@ pub struct Frame<'a> {
     epsilon: f32,
 }
 
+/// The primary ray of a pixel (rows from the top), exactly as a frame casts it.
+pub fn primary_ray(view: &View, size: Size, pixel: usize) -> GivenRay {
+    let grid = view.camera.pixel_grid(size.width, size.height);
+    let (column, row) = (pixel as u32 % size.width, pixel as u32 / size.width);
+    GivenRay { origin: grid.origin, direction: pixel_direction(&grid, column, row).into() }
+}
+
+fn pixel_direction(grid: &PixelGrid, column: u32, row: u32) -> Vec3A {
+    let x = column as f32 + 0.5;
+    let y = row as f32 + 0.5;
+    unit(Vec3A::from(grid.corner) + Vec3A::from(grid.right) * x + Vec3A::from(grid.down) * y)
+}
+
 impl<'a> Frame<'a> {
     /// A frame of a view. `epsilon` is [`crate::backend::surface_epsilon`] of the scene.
     pub fn new(
@@ -49,11 +62,7 @@ impl<'a> Frame<'a> {
     }
 
     fn primary_ray(&self, column: u32, row: u32) -> Ray {
-        let x = column as f32 + 0.5;
-        let y = row as f32 + 0.5;
-        let direction =
-            Vec3A::from(self.grid.corner) + Vec3A::from(self.grid.right) * x + Vec3A::from(self.grid.down) * y;
-        Ray::new(self.grid.origin.into(), unit(direction))
+        Ray::new(self.grid.origin.into(), pixel_direction(&self.grid, column, row))
     }
 
     /// Renders the group whose top left pixel is `(column, row)` and hands each pixel inside the image to `store` with

@@ -13,7 +13,6 @@ use crate::scene::{Light, Scene};
 use bytemuck::{AnyBitPattern, NoUninit, Zeroable};
 use std::collections::{HashMap, VecDeque};
 use std::time::{Duration, Instant};
-use wgpu::util::DeviceExt;
 
 /// Bands of frames that are rendered or counted, not timed: about this many pixels.
 const BAND_PIXELS: u32 = 262_144;
@@ -112,12 +111,7 @@ impl<'a> GpuPrepared<'a> {
             let problem = format!("an image of {x} x {y} work-groups is beyond this device's {most} per dimension");
             return Err(Error::Device(problem));
         }
-        let device = &self.backend.device;
-        let uniforms = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("frames"),
-            contents: &uniforms,
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
+        let uniforms = self.backend.filled("the frames", &uniforms, wgpu::BufferUsages::UNIFORM)?;
         Ok(Frames { uniforms, lights: self.backend.storage("the lights", &lights)?, stride, groups })
     }
 
@@ -360,11 +354,8 @@ impl Prepared for GpuPrepared<'_> {
                 .map(|ray| TraceRay { origin: ray.origin, direction: ray.direction, ..TraceRay::zeroed() })
                 .collect();
             let given = self.backend.storage("the given rays", &given)?;
-            let job = self.backend.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("job"),
-                contents: bytemuck::cast_slice(&[rays.len() as u32, 0, 0, 0]),
-                usage: wgpu::BufferUsages::UNIFORM,
-            });
+            let job = [rays.len() as u32, 0, 0, 0];
+            let job = self.backend.filled("the job", bytemuck::cast_slice(&job), wgpu::BufferUsages::UNIFORM)?;
             let output = self.poisoned("the hits", (rays.len() * 8) as u64)?;
             let bindings = self.bind(
                 &compiled,

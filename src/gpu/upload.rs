@@ -9,7 +9,6 @@ use crate::math::Aabb;
 use crate::scene::Scene;
 use bytemuck::{NoUninit, Pod};
 use glam::Vec3;
-use wgpu::util::DeviceExt;
 
 /// Buffers of one scene and one structure.
 pub(super) struct Uploaded {
@@ -33,16 +32,15 @@ impl GpuBackend {
     pub(super) fn storage<T: NoUninit>(&self, what: &str, contents: &[T]) -> Result<wgpu::Buffer> {
         let bytes: &[u8] = bytemuck::cast_slice(contents);
         self.check_size(what, bytes.len() as u64)?;
-        let mut padded = Vec::new();
-        let contents = if bytes.len() < SMALLEST {
-            padded.extend_from_slice(bytes);
-            padded.resize(SMALLEST, 0);
-            &padded
-        } else {
-            bytes
-        };
-        let usage = wgpu::BufferUsages::STORAGE;
-        Ok(self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(what), contents, usage }))
+        self.filled(what, bytes, wgpu::BufferUsages::STORAGE)
+    }
+
+    /// A buffer with contents. (wgpu's `create_buffer_init` panics on a lost device.)
+    pub(super) fn filled(&self, what: &str, bytes: &[u8], usage: wgpu::BufferUsages) -> Result<wgpu::Buffer> {
+        let buffer = self.buffer(what, bytes.len() as u64, usage | wgpu::BufferUsages::COPY_DST)?;
+        self.queue.write_buffer(&buffer, 0, bytes);
+        self.check()?;
+        Ok(buffer)
     }
 
     /// An uninitialised buffer.
@@ -87,11 +85,11 @@ impl GpuBackend {
             materials: self.storage("the materials", &scene.materials)?,
             triangle_materials: self.storage("the triangles' materials", &triangle_materials)?,
             nodes: self.storage("the structure's nodes or cells", nodes)?,
-            structure: self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("structure"),
-                contents: bytemuck::bytes_of(&structure_uniform(structure)),
-                usage: wgpu::BufferUsages::UNIFORM,
-            }),
+            structure: self.filled(
+                "the structure's constants",
+                bytemuck::bytes_of(&structure_uniform(structure)),
+                wgpu::BufferUsages::UNIFORM,
+            )?,
             geometry_bytes: size(bytes(&scene.vertices))
                 + size(bytes(&scene.materials))
                 + size(bytes(&triangle_materials)),

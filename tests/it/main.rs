@@ -3,11 +3,12 @@
 mod accel; // builders x degenerate inputs, validation, memory model, determinism
 mod camera; // camera paths: files, thinning, fitting, errors
 mod cli; // the program as a user runs it: outputs, exit codes, broken input
+mod fakes; // records with known content, a device that breaks on demand
 mod kernels; // every kernel variant through naga, struct layouts, no GPU
 mod reference; // rays traced by Embree (needs RTBENCH_SCENES)
 mod results; // journal, CSV and JSON agree; statistics; rays and hits
 mod scene; // PLY of every kind, broken PLY of every kind, procedural scenes
-mod support; // records with known content, a device that breaks on demand
+mod support; // small scenes, random numbers, the GPU if there is one
 mod sweep; // the sweep loop on a device that breaks, presets, the plan
 mod traversal; // every traversal against brute force, CPU twins and GPU
 mod verify; // the verifier notices one wrong pixel

@@ -1,6 +1,6 @@
 //! Records and what is made of them: statistics by hand, journals whole and cut off, CSV and JSON that agree.
 
-use crate::support::{configuration, provenance, structure};
+use crate::fakes::{configuration, provenance, structure};
 use proptest::prelude::*;
 use rtbench::backend::{Config, GivenRay};
 use rtbench::math::{Hit, MISS};

@@ -1,212 +1,90 @@
-//! Records with known content, and a device that can be told to break.
+//! What several modules need: small scenes, random numbers, the GPU if there is one, files of others.
 
-use rtbench::accel::{Structure, Traversal};
-use rtbench::backend::{
-    Backend, Config, CountedPixel, DeviceInfo, DeviceType, FrameTime, GivenRay, Interrupted, Pixel, Prepared, Size,
-};
-use rtbench::bench::environment;
-use rtbench::camera::View;
-use rtbench::cpu::CpuBackend;
-use rtbench::math::Hit;
-use rtbench::results::record::{
-    ConfigurationRecord, CounterSums, Environment, Memory, PlanRecord, Provenance, SCHEMA, Samples, SceneRecord,
-    Status, StructureRecord, TimingSource,
-};
-use rtbench::scene::Scene;
-use rtbench::{Error, Result};
-use std::cell::Cell;
-use std::rc::Rc;
+use glam::Vec3;
+use rtbench::gpu::{GpuBackend, GpuOptions, Selector};
+use rtbench::math::Vertex;
+use rtbench::scene::{Light, Material, Scene, Triangle};
+use std::path::PathBuf;
+use std::sync::OnceLock;
 
-pub fn provenance() -> Provenance {
-    Provenance {
-        schema: SCHEMA.into(),
-        program: environment::program(),
-        started: "2026-01-02T03:04:05Z".into(),
-        arguments: vec!["rtbench".into(), "sweep".into(), "--out=\"a b\"".into()],
-        device: DeviceInfo {
-            name: "llvmpipe (LLVM 15.0.6, 256 bits)".into(),
-            device_type: DeviceType::SoftwareRasteriser,
-            backend: "vulkan".into(),
-            driver: "Mesa 25.0.7".into(),
-            timestamp_period_ns: Some(1.0),
-            checked: false,
-            features: vec!["TIMESTAMP_QUERY".into()],
-            limits: [("max_buffer_size".to_owned(), u64::MAX)].into(),
-            threads: Some(2),
-        },
-        device_reason: "the only Vulkan adapter".into(),
-        environment: Environment { load_average: [0.1, 0.2, 0.3], ..Environment::default() },
-        plan: PlanRecord {
-            preset: "quick".into(),
-            scenes: vec!["scan".into()],
-            structures: vec!["grid (default)".into()],
-            configurations: 2,
-            passes: 2,
-            warmup_frames: 1,
-            skipped: vec![],
-        },
+/// Numbers between -1 and 1 from a small generator of our own: the same on every machine.
+pub fn random(seed: u32) -> impl FnMut() -> f32 {
+    let mut state = seed.wrapping_mul(0x9e37_79b9) ^ 0x85eb_ca6b;
+    move || {
+        state ^= state << 13;
+        state ^= state >> 17;
+        state ^= state << 5;
+        (state >> 8) as f32 / 8_388_608.0 - 1.0
     }
 }
 
-fn scene() -> SceneRecord {
-    SceneRecord { name: "scan".into(), hash: "abc".into(), triangles: 12, vertices: 8, ..SceneRecord::default() }
+/// Random triangles in the box from -1 to 1, some of them without area or twice the same. Flat ones lie in the planes
+/// of a lattice, many at exactly equal distances from a ray.
+pub fn soup(triangles: usize, seed: u32, flat: bool) -> Scene {
+    let mut random = random(seed);
+    let mut scene = Scene { name: format!("soup-{triangles}-{seed}"), ..Scene::default() };
+    let size = (8.0 / (triangles as f32).sqrt()).clamp(0.02, 0.8);
+    for index in 0..triangles {
+        let mut point = |scale: f32| Vec3::new(random(), random(), random()) * scale;
+        let center = point(1.0);
+        let mut corners = [center, center + point(size), center + point(size)];
+        if flat {
+            corners = corners.map(|p| (p * 4.0).round() / 4.0);
+            let axis = index % 3;
+            corners[1][axis] = corners[0][axis];
+            corners[2][axis] = corners[0][axis];
+        }
+        if index % 29 == 7 {
+            corners[2] = corners[1];
+        }
+        let first = scene.vertices.len() as u32;
+        scene.vertices.extend(corners.map(|p| Vertex::new(p, Vec3::ZERO)));
+        scene.triangles.push(Triangle { vertices: [first, first + 1, first + 2], material: 0 });
+        if index % 31 == 11 {
+            scene.triangles.push(Triangle { vertices: [first + 2, first, first + 1], material: 0 });
+        }
+    }
+    scene.materials.push(Material::matt(Vec3::splat(0.7)));
+    scene.lights.push(Light::new(Vec3::new(2.0, 3.0, 1.0), Vec3::ONE));
+    scene.background = Vec3::new(0.1, 0.1, 0.2);
+    scene
 }
 
-pub fn structure(name: &str) -> StructureRecord {
-    let mut record = StructureRecord {
-        scene: scene(),
-        structure: name.into(),
-        variant: "default".into(),
-        build_ms: 1.25,
-        build_threads: 1,
-        memory: Memory { structure_bytes: 100, geometry_bytes: 200, thesis_bytes: 300 },
-        ..StructureRecord::default()
+fn open(options: GpuOptions) -> Option<GpuBackend> {
+    match GpuBackend::open(&Selector::Best, options) {
+        Ok(gpu) => Some(gpu),
+        // CI sets RTBENCH_REQUIRE_GPU, so that a missing driver cannot pass for a passed test
+        Err(error) if std::env::var_os("RTBENCH_REQUIRE_GPU").is_none() => {
+            eprintln!("not run: {error}");
+            None
+        }
+        Err(error) => panic!("RTBENCH_REQUIRE_GPU is set, but {error}"),
+    }
+}
+
+/// The best Vulkan device, one for all tests so that kernels are compiled once; without one, says so and returns
+/// nothing.
+pub fn gpu() -> Option<&'static GpuBackend> {
+    static GPU: OnceLock<Option<GpuBackend>> = OnceLock::new();
+    let gpu = GPU.get_or_init(|| open(GpuOptions::default())).as_ref();
+    if gpu.is_none() {
+        eprintln!("not run: needs a Vulkan device");
+    }
+    gpu
+}
+
+/// A device of one's own, with or without wgpu's shader checks.
+pub fn own_gpu(checked: bool) -> Option<GpuBackend> {
+    open(GpuOptions { checked, ..GpuOptions::default() })
+}
+
+/// A file below the folder named by an environment variable; without it, says so and returns nothing.
+pub fn file_below(variable: &str, path: &str) -> Option<PathBuf> {
+    let Some(folder) = std::env::var_os(variable) else {
+        eprintln!("not run: {variable} is not set; it names the folder with {path}");
+        return None;
     };
-    (record.properties.cells_x, record.properties.references_per_triangle) = (Some(3), Some(1.5));
-    record
-}
-
-/// Two passes over two frames: 2 and 4 ms by the device's clock, 2.2 and 4.4 by the wall's.
-pub fn configuration(name: &str, config: Config) -> ConfigurationRecord {
-    let ms = |a: f64, b: f64| vec![(a * 1e6) as u64, (b * 1e6) as u64];
-    ConfigurationRecord {
-        scene: scene(),
-        structure: name.into(),
-        variant: "default".into(),
-        width: 10,
-        height: 5,
-        frames: 2,
-        passes: 2,
-        status: Status::Ok,
-        verified: true,
-        image_hash: Some("123".into()),
-        counters: Some([
-            CounterSums { rays: 100, inner: 600, leaves: 150, tests: 10, pops: 1, restarts: 0 },
-            CounterSums { rays: 50, inner: 1, leaves: 1, tests: 100, pops: 0, restarts: 0 },
-            CounterSums::default(),
-        ]),
-        memory: Memory { structure_bytes: 100, geometry_bytes: 200, thesis_bytes: 300 },
-        build_ms: 1.25,
-        build_threads: 1,
-        timing_source: Some(TimingSource::Device),
-        samples: Some(Samples {
-            device_ns: Some(vec![ms(2.0, 4.0), ms(2.0, 4.0)]),
-            wall_ns: vec![ms(2.2, 4.4), ms(2.2, 4.4)],
-            pass_ns: vec![7_000_000, 7_000_000],
-        }),
-        ..ConfigurationRecord::new(config)
-    }
-}
-
-/// What a device does wrong.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Fault {
-    /// Nothing.
-    None,
-    /// One pixel of the timed kernel names another triangle.
-    WrongTriangle,
-    /// One pixel of the counting kernel has another colour.
-    CountingDiffers,
-    /// Preparing fails: too large.
-    NoRoom,
-    /// Lost while timing PS, once.
-    LostOnce,
-}
-
-/// The CPU twins, with a fault wherever `traversal` is walked.
-pub struct Faulty {
-    inner: CpuBackend,
-    info: DeviceInfo,
-    fault: Fault,
-    traversal: Traversal,
-    spent: Rc<Cell<bool>>,
-}
-
-impl Faulty {
-    pub fn new(fault: Fault, traversal: Traversal, spent: Rc<Cell<bool>>) -> Faulty {
-        let inner = CpuBackend::new(1).unwrap();
-        let info = inner.info().clone();
-        Faulty { inner, info, fault, traversal, spent }
-    }
-
-    /// Under another name.
-    pub fn named(mut self, name: &str) -> Faulty {
-        self.info.name = name.into();
-        self
-    }
-}
-
-impl Backend for Faulty {
-    fn info(&self) -> &DeviceInfo {
-        &self.info
-    }
-
-    fn prepare<'a>(
-        &'a self,
-        scene: &'a Scene,
-        structure: &'a Structure,
-        traversal: Traversal,
-    ) -> Result<Box<dyn Prepared + 'a>> {
-        let fault = if traversal == self.traversal { self.fault } else { Fault::None };
-        if fault == Fault::NoRoom {
-            return Err(Error::Device("the structure needs 5 GiB, the device has 1 GiB".into()));
-        }
-        let inner = self.inner.prepare(scene, structure, traversal)?;
-        Ok(Box::new(FaultyPrepared { inner, fault, spent: &self.spent }))
-    }
-}
-
-struct FaultyPrepared<'a> {
-    inner: Box<dyn Prepared + 'a>,
-    fault: Fault,
-    spent: &'a Cell<bool>,
-}
-
-impl Prepared for FaultyPrepared<'_> {
-    fn image(&mut self, config: Config, view: &View, size: Size) -> Result<Vec<Pixel>> {
-        let mut pixels = self.inner.image(config, view, size)?;
-        if self.fault == Fault::WrongTriangle {
-            let middle = pixels.len() / 2;
-            pixels[middle].triangle = pixels[middle].triangle.wrapping_add(1);
-        }
-        Ok(pixels)
-    }
-
-    fn counted(
-        &mut self,
-        config: Config,
-        view: &View,
-        size: Size,
-        band: &mut dyn FnMut(u32, &[CountedPixel]),
-    ) -> Result<()> {
-        let differs = self.fault == Fault::CountingDiffers;
-        self.inner.counted(config, view, size, &mut |row, pixels| {
-            let mut pixels = pixels.to_vec();
-            if differs && row == 0 {
-                pixels[0].pixel.rgba ^= 1;
-            }
-            band(row, &pixels);
-        })
-    }
-
-    fn time_path(
-        &mut self,
-        config: Config,
-        views: &[View],
-        size: Size,
-        interrupted: Interrupted,
-    ) -> Result<Vec<FrameTime>> {
-        if self.fault == Fault::LostOnce && config == Config::PS && !self.spent.replace(true) {
-            return Err(Error::DeviceLost("the driver\nreset".into()));
-        }
-        self.inner.time_path(config, views, size, interrupted)
-    }
-
-    fn trace(&mut self, rays: &[GivenRay], any_hit: bool) -> Result<Vec<Hit>> {
-        self.inner.trace(rays, any_hit)
-    }
-
-    fn allocated(&self) -> (u64, u64) {
-        self.inner.allocated()
-    }
+    let file = PathBuf::from(folder).join(path);
+    assert!(file.exists(), "{variable} is set, but {} does not exist", file.display());
+    Some(file)
 }

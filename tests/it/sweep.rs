@@ -1,6 +1,6 @@
 //! The sweep loop on a device that breaks in the ways devices break, and the plan before it.
 
-use crate::support::{Fault, Faulty};
+use crate::fakes::{Fault, Faulty};
 use rtbench::accel::{Selection, Traversal};
 use rtbench::backend::{Config, Size};
 use rtbench::bench::plan::{Plan, Request, check_size, parse_list, parse_size};
@@ -210,7 +210,7 @@ fn sizes() {
         let error = parse_size(wrong).unwrap_err().to_string();
         assert!(error.starts_with("--resolution: ") && !error.contains('\n'), "{wrong}: {error}");
     }
-    let mut device = crate::support::provenance().device;
+    let mut device = crate::fakes::provenance().device;
     device.limits = [("max_storage_buffer_binding_size".to_owned(), 8 * 100)].into();
     assert!(check_size(Size { width: 10, height: 10 }, &device).is_ok());
     let error = check_size(Size { width: 10, height: 11 }, &device).unwrap_err().to_string();

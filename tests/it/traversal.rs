@@ -1,1 +1,250 @@
-//! traversal
+//! Every traversal against brute force, and the GPU against the CPU twins to the bit: random triangles, meshes with
+//! shared edges, rays from outside and inside, along axes and in planes of triangles.
+
+use crate::support::{gpu, random, soup};
+use glam::Vec3;
+use proptest::prelude::*;
+use rtbench::accel::{Selection, variants};
+use rtbench::backend::{Backend, Config, CountedPixel, GivenRay, Pixel, Size};
+use rtbench::camera::{Camera, View};
+use rtbench::cpu::CpuBackend;
+use rtbench::math::{Hit, MISS};
+use rtbench::scene::{Light, Material, Scene};
+
+/// Rays of every character around a box from -1 to 1.
+fn rays(count: usize, seed: u32) -> Vec<GivenRay> {
+    let mut random = random(seed);
+    (0..count)
+        .map(|index| {
+            let mut point = |scale: f32| Vec3::new(random(), random(), random()) * scale;
+            let (outside, inside, target) = (point(3.0), point(1.0), point(1.0));
+            let direction = (target - outside).normalize_or(Vec3::X);
+            match index % 5 {
+                0 => GivenRay { origin: outside, direction },
+                1 => GivenRay { origin: inside, direction },
+                // Along an axis: two components are exactly zero
+                2 => GivenRay { origin: inside - Vec3::Z * 3.0, direction: Vec3::Z },
+                // In a plane of the lattice that flat soups lie in, with one zero component and no unit length
+                3 => GivenRay {
+                    origin: (outside * 4.0).round() / 4.0,
+                    direction: Vec3::new(direction.x, 0.0, direction.z) * 7.0,
+                },
+                _ => GivenRay { origin: inside, direction: -Vec3::Y * 0.01 },
+            }
+        })
+        .filter(|ray| ray.direction != Vec3::ZERO)
+        .collect()
+}
+
+fn trace(backend: &dyn Backend, scene: &Scene, selection: &str, rays: &[GivenRay], any_hit: bool) -> Vec<Hit> {
+    let selection = Selection::parse(selection).unwrap();
+    let built = selection.build(scene, 1).unwrap();
+    backend.prepare(scene, &built.structure, selection.traversal()).unwrap().trace(rays, any_hit).unwrap()
+}
+
+fn assert_same(name: &str, rays: &[GivenRay], expected: &[Hit], found: &[Hit]) {
+    for ((ray, expected), found) in rays.iter().zip(expected).zip(found) {
+        assert!(
+            expected.triangle == found.triangle && expected.t.to_bits() == found.t.to_bits(),
+            "{name}: {ray:?}: expected {expected:?}, found {found:?}"
+        );
+    }
+    assert_eq!(expected.len(), found.len());
+}
+
+fn names() -> Vec<&'static str> {
+    variants().iter().map(|v| v.name).collect()
+}
+
+/// All structures on one backend, nearest and any hit, against brute force on the CPU.
+fn check_all(backend: &dyn Backend, scene: &Scene, rays: &[GivenRay]) {
+    let cpu = CpuBackend::new(2).unwrap();
+    let nearest = trace(&cpu, scene, "brute", rays, false);
+    let hits: Vec<bool> = nearest.iter().map(|hit| hit.triangle != MISS).collect();
+    for name in names() {
+        assert_same(name, rays, &nearest, &trace(backend, scene, name, rays, false));
+        let any: Vec<bool> = trace(backend, scene, name, rays, true).iter().map(|hit| hit.triangle != MISS).collect();
+        assert_eq!(any, hits, "{name}: any hit");
+    }
+}
+
+#[test]
+fn twins_find_what_brute_force_finds() {
+    for (index, flat) in [(0, false), (1, true)] {
+        let scene = soup(700, 7 + index, flat);
+        check_all(&CpuBackend::new(2).unwrap(), &scene, &rays(4000, 3));
+    }
+}
+
+#[test]
+fn gpu_finds_what_brute_force_finds() {
+    let Some(gpu) = gpu() else { return };
+    for (index, flat) in [(0, false), (1, true)] {
+        let scene = soup(700, 70 + index, flat);
+        check_all(gpu, &scene, &rays(4000, 5));
+    }
+}
+
+/// lavapipe ends a loop after 65,535 turns; the brute-force kernel must not notice.
+#[test]
+fn gpu_brute_force_sees_all_of_a_large_scene() {
+    let Some(gpu) = gpu() else { return };
+    let scene = soup(70_000, 1, false);
+    let cpu = CpuBackend::new(2).unwrap();
+    let rays = rays(200, 9);
+    let expected = trace(&cpu, &scene, "bvh-stack", &rays, false);
+    assert_same("brute", &rays, &expected, &trace(gpu, &scene, "brute", &rays, false));
+    let late = expected.iter().filter(|hit| hit.triangle != MISS && hit.triangle > 65_535).count();
+    assert!(late > 0, "no ray hits a triangle beyond the 65,535th: the test would see nothing");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
+
+    #[test]
+    fn twins_agree_on_random_scenes(triangles in 1usize..120, seed in 0u32..10_000, flat: bool) {
+        let scene = soup(triangles, seed, flat);
+        check_all(&CpuBackend::new(1).unwrap(), &scene, &rays(300, seed ^ 0x55));
+    }
+}
+
+fn view(lights: usize) -> View {
+    let direction = Vec3::new(0.3, -0.35, -1.0).normalize();
+    let lights = (0..lights).map(|i| {
+        let angle = i as f32 * 2.1;
+        Light::new(Vec3::new(3.0 * angle.sin(), 2.5, 3.0 * angle.cos()), Vec3::splat(0.6))
+    });
+    View {
+        camera: Camera { position: direction * -3.2, direction, up: Vec3::Y, field_of_view: 50.0 },
+        lights: lights.collect(),
+    }
+}
+
+fn shiny(mut scene: Scene) -> Scene {
+    scene.materials.push(Material::matt(Vec3::new(0.3, 0.5, 0.8)).shiny(Vec3::splat(0.5), 30.0, 0.6));
+    for (index, triangle) in scene.triangles.iter_mut().enumerate() {
+        triangle.material = (index % 3 == 0) as u32;
+    }
+    scene
+}
+
+fn counted(
+    backend: &dyn Backend,
+    scene: &Scene,
+    name: &str,
+    config: Config,
+    size: Size,
+) -> (Vec<CountedPixel>, Vec<Pixel>) {
+    let selection = Selection::parse(name).unwrap();
+    let built = selection.build(scene, 1).unwrap();
+    let mut prepared = backend.prepare(scene, &built.structure, selection.traversal()).unwrap();
+    let mut pixels = Vec::new();
+    prepared.counted(config, &view(3), size, &mut |_, band| pixels.extend_from_slice(band)).unwrap();
+    let timed = prepared.image(config, &view(3), size).unwrap();
+    (pixels, timed)
+}
+
+/// Sizes that are no multiple of a work-group's eight: the last groups hang over the edge.
+const SIZE: Size = Size { width: 75, height: 43 };
+
+#[test]
+fn timed_and_counting_twins_make_the_same_picture() {
+    let scene = shiny(soup(400, 11, false));
+    let cpu = CpuBackend::new(2).unwrap();
+    for config in Config::ALL {
+        let (reference, _) = counted(&cpu, &scene, "brute", config, SIZE);
+        let rays = |kind: usize| reference.iter().map(|p| p.counters[kind].rays).sum::<u32>();
+        assert_eq!(rays(0) as usize, SIZE.pixels());
+        assert_eq!(rays(1) > 0, config.shadows());
+        assert_eq!(rays(2) > 0, config.bounces() > 0);
+        for name in names() {
+            let (pixels, timed) = counted(&cpu, &scene, name, config, SIZE);
+            for (index, (pixel, expected)) in pixels.iter().zip(&reference).enumerate() {
+                assert_eq!(pixel.pixel, timed[index], "{name} {config:?} pixel {index}: timed and counting differ");
+                assert_eq!(pixel.pixel, expected.pixel, "{name} {config:?} pixel {index}");
+                assert_eq!(pixel.t, expected.t, "{name} {config:?} pixel {index}");
+                assert_eq!(pixel.counters.map(|c| c.rays), expected.counters.map(|c| c.rays), "{name} pixel {index}");
+            }
+        }
+    }
+}
+
+/// On lavapipe, to the bit: triangles, distances, every counter; and colours but for `pow`.
+#[test]
+fn gpu_counts_what_its_twin_counts() {
+    let Some(gpu) = gpu() else { return };
+    if !gpu.info().is_exact() {
+        eprintln!("not run: {} is not compared to the bit", gpu.info().name);
+        return;
+    }
+    let cpu = CpuBackend::new(2).unwrap();
+    for scene in [shiny(soup(400, 12, false)), shiny(soup(400, 13, true))] {
+        for config in Config::ALL {
+            for name in names() {
+                let (twin, _) = counted(&cpu, &scene, name, config, SIZE);
+                let (kernel, timed) = counted(gpu, &scene, name, config, SIZE);
+                for (index, (kernel, twin)) in kernel.iter().zip(&twin).enumerate() {
+                    let place = format!("{name} {config:?} pixel {index}");
+                    assert_eq!(kernel.pixel, timed[index], "{place}: timed and counting kernels differ");
+                    assert_eq!(kernel.pixel.triangle, twin.pixel.triangle, "{place}");
+                    assert_eq!(kernel.t, twin.t, "{place}: distance");
+                    assert_eq!(kernel.counters, twin.counters, "{place}");
+                    let channels = kernel.pixel.rgba.to_le_bytes().into_iter().zip(twin.pixel.rgba.to_le_bytes());
+                    let worst = channels.map(|(a, b)| a.abs_diff(b)).max().unwrap();
+                    assert!(worst <= rtbench::bench::verify::COLOUR_LEVELS, "{place}: colours differ by {worst}");
+                }
+            }
+        }
+    }
+}
+
+/// `--checked` compiles other code, which must find the same.
+#[test]
+fn checked_kernels_make_the_same_picture() {
+    let (Some(gpu), Some(checked)) = (gpu(), crate::support::own_gpu(true)) else { return };
+    let scene = shiny(soup(300, 14, false));
+    for name in names() {
+        let (plain, _) = counted(gpu, &scene, name, Config::PSR, SIZE);
+        let (checked, _) = counted(&checked, &scene, name, Config::PSR, SIZE);
+        assert_eq!(plain, checked, "{name}");
+    }
+}
+
+/// A device that is gone is an error, not a panic, and a new one works.
+#[test]
+fn a_lost_device_is_an_error() {
+    let Some(gpu) = crate::support::own_gpu(false) else { return };
+    let scene = soup(50, 15, false);
+    let selection = Selection::parse("bvh-stack").unwrap();
+    let built = selection.build(&scene, 1).unwrap();
+    let mut prepared = gpu.prepare(&scene, &built.structure, selection.traversal()).unwrap();
+    prepared.image(Config::P, &view(1), SIZE).unwrap();
+    gpu.destroy();
+    let lost = |error: rtbench::Error| assert!(matches!(error, rtbench::Error::DeviceLost(_)), "{error:?}");
+    lost(prepared.image(Config::P, &view(1), SIZE).unwrap_err());
+    lost(prepared.time_path(Config::P, &[view(1)], SIZE, &|| false).unwrap_err());
+    lost(prepared.counted(Config::P, &view(1), SIZE, &mut |_, _| ()).unwrap_err());
+    drop(prepared);
+    let again = crate::support::own_gpu(false).expect("the device opens again");
+    again.prepare(&scene, &built.structure, selection.traversal()).unwrap().image(Config::P, &view(1), SIZE).unwrap();
+}
+
+/// The clock: as many times as frames, device times where there are timestamps, and an interrupt is noticed.
+#[test]
+fn paths_are_timed_frame_by_frame() {
+    let scene = soup(50, 16, false);
+    let selection = Selection::parse("bvh-stack").unwrap();
+    let built = selection.build(&scene, 1).unwrap();
+    let cpu = CpuBackend::new(1).unwrap();
+    let backends = [Some(&cpu as &dyn Backend), gpu().map(|gpu| gpu as &dyn Backend)];
+    for backend in backends.into_iter().flatten() {
+        let mut prepared = backend.prepare(&scene, &built.structure, selection.traversal()).unwrap();
+        let times = prepared.time_path(Config::P, &vec![view(1); 5], SIZE, &|| false).unwrap();
+        assert_eq!(times.len(), 5);
+        assert!(times.iter().all(|t| t.wall_ns > 0));
+        let stamped = backend.info().timestamp_period_ns.is_some();
+        assert!(times.iter().all(|t| t.device_ns.is_some_and(|ns| ns > 0) == stamped), "{times:?}");
+        let interrupted = prepared.time_path(Config::P, &vec![view(1); 5], SIZE, &|| true).unwrap_err();
+        assert!(matches!(interrupted, rtbench::Error::Interrupted));
+    }
+}

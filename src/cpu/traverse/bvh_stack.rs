@@ -61,7 +61,7 @@ impl<'a> BvhStack<'a> {
         let root = &self.pairs[0][0];
         let (min, max) = root.corners();
         let mut node = if wanted(ray_box(ray, min, max), t) { root_reference(root) } else { EMPTY };
-        let mut pop = |node: &mut u32, depth: &mut usize, stack: &[u32; STACK_SIZE], count: &mut C| {
+        let pop = |node: &mut u32, depth: &mut usize, stack: &[u32; STACK_SIZE], count: &mut C| {
             *depth -= 1;
             *node = stack[*depth];
             if *node != EMPTY {

@@ -1,0 +1,147 @@
+//! Where to split a large kd-tree cell: min-max binning.
+//!
+//! M. Shevtsov, A. Soupikov, A. Kapustin: Highly Parallel Fast KD-tree Construction for Interactive Ray Tracing of
+//! Dynamic Scenes, 2007. Per axis one array counts the boxes that begin in a bin and one those that end in it.
+
+use super::kdtree_build::Split;
+use super::prims::{CHUNK, Prim};
+use crate::math::Aabb;
+use rayon::prelude::*;
+
+/// Most bins per axis.
+pub const MAX_BINS: usize = 64;
+
+/// The borders of one axis's bins, which are the candidate planes.
+///
+/// A bin's number is defined by the planes themselves (the multiplication is a first guess, mended by comparing), so
+/// that counting by bins and comparing a box with the chosen plane cannot disagree, whatever rounding does.
+struct Axis {
+    /// `planes[b]` lies below bin `b`; `planes[0]` is below everything.
+    planes: [f32; MAX_BINS],
+    bins: usize,
+    min: f32,
+    scale: f32,
+}
+
+impl Axis {
+    fn new(min: f32, max: f32, bins: usize) -> Axis {
+        let mut planes = [f32::NEG_INFINITY; MAX_BINS];
+        let (lo, hi) = (f64::from(min), f64::from(max));
+        for (b, plane) in planes[..bins].iter_mut().enumerate().skip(1) {
+            *plane = (lo + (hi - lo) * b as f64 / bins as f64) as f32;
+        }
+        Axis { planes, bins, min, scale: (bins as f64 / (hi - lo).max(f64::MIN_POSITIVE)) as f32 }
+    }
+
+    /// How many planes lie at or below `x`: the bin in which a box that begins at `x` begins.
+    #[inline(always)]
+    fn bin(&self, x: f32) -> usize {
+        let mut bin = (((x - self.min) * self.scale) as usize).min(self.bins - 1) % MAX_BINS;
+        while bin + 1 < self.bins && self.planes[bin + 1] <= x {
+            bin += 1;
+        }
+        while self.planes[bin] > x {
+            bin -= 1;
+        }
+        bin
+    }
+}
+
+/// Counts of one axis.
+#[derive(Clone, Copy)]
+struct Counts {
+    /// Boxes that begin in a bin, a plane belonging to the bin above it.
+    begin: [u32; MAX_BINS],
+    /// Boxes that end in a bin, a plane belonging to the bin below it.
+    end: [u32; MAX_BINS],
+    /// Boxes that lie in the plane below a bin.
+    planar: [u32; MAX_BINS],
+}
+
+impl Counts {
+    const ZERO: Counts = Counts { begin: [0; MAX_BINS], end: [0; MAX_BINS], planar: [0; MAX_BINS] };
+
+    fn merge(&mut self, other: &Counts) {
+        for bin in 0..MAX_BINS {
+            self.begin[bin] += other.begin[bin];
+            self.end[bin] += other.end[bin];
+            self.planar[bin] += other.planar[bin];
+        }
+    }
+}
+
+/// The cheapest of the planes between `bins` equal slices of the cell, on any axis.
+pub(super) fn find(prims: &[Prim], cell: &Aabb, bins: usize) -> Option<Split> {
+    let axes = [0, 1, 2].map(|a| Axis::new(cell.min[a], cell.max[a], bins));
+    let count = |chunk: &[Prim]| {
+        let mut counts = [Counts::ZERO; 3];
+        for prim in chunk {
+            for (a, (axis, counts)) in axes.iter().zip(&mut counts).enumerate() {
+                let (begin, top) = (axis.bin(prim.min[a]), axis.bin(prim.max[a]));
+                // A box that ends in a plane ends below it. There is no plane below bin 0.
+                let end = top - usize::from(axis.planes[top] == prim.max[a]);
+                counts.begin[begin] += 1;
+                counts.end[end] += 1;
+                counts.planar[begin] += u32::from(end < begin);
+            }
+        }
+        counts
+    };
+    let mut total = [Counts::ZERO; 3];
+    for part in prims.par_chunks(4 * CHUNK).map(count).collect::<Vec<_>>() {
+        total.iter_mut().zip(&part).for_each(|(total, part)| total.merge(part));
+    }
+    let mut best: Option<Split> = None;
+    for a in 0..3 {
+        sweep(a, &axes[a], &total[a], prims.len(), cell, &mut best);
+    }
+    best
+}
+
+/// One sweep over the borders of an axis. Both sides' areas are linear in the plane's coordinate.
+fn sweep(a: usize, axis: &Axis, counts: &Counts, triangles: usize, cell: &Aabb, best: &mut Option<Split>) {
+    let sides = Sides::new(cell, a);
+    let (mut left, mut right) = (0, triangles);
+    for bin in 1..axis.bins {
+        left += counts.begin[bin - 1] as usize;
+        right -= counts.end[bin - 1] as usize;
+        let planar = counts.planar[bin] as usize;
+        // Boxes in the plane have ended below it without having begun: they are on neither side yet.
+        sides.offer(axis.planes[bin], left, planar, right, best);
+    }
+}
+
+/// The areas of both sides of a plane, as functions of its coordinate.
+pub(super) struct Sides {
+    axis: usize,
+    min: f32,
+    max: f32,
+    /// Area of the plane's section of the cell.
+    section: f64,
+    /// Half its circumference.
+    rim: f64,
+}
+
+impl Sides {
+    pub fn new(cell: &Aabb, axis: usize) -> Sides {
+        let e = cell.max.as_dvec3() - cell.min.as_dvec3();
+        let (u, v) = (e[(axis + 1) % 3], e[(axis + 2) % 3]);
+        Sides { axis, min: cell.min[axis], max: cell.max[axis], section: u * v, rim: u + v }
+    }
+
+    /// Takes the plane if it is cheaper than the best so far; never one on the border of the cell.
+    #[inline(always)]
+    pub fn offer(&self, plane: f32, left: usize, planar: usize, right: usize, best: &mut Option<Split>) {
+        if !(plane > self.min && plane < self.max) {
+            return;
+        }
+        let left_area = self.section + self.rim * (f64::from(plane) - f64::from(self.min));
+        let right_area = self.section + self.rim * (f64::from(self.max) - f64::from(plane));
+        let planar_left = left_area <= right_area;
+        let (left, right) = if planar_left { (left + planar, right) } else { (left, right + planar) };
+        let weighted = left_area * left as f64 + right_area * right as f64;
+        if best.is_none_or(|b| weighted < b.weighted) {
+            *best = Some(Split { axis: self.axis, plane, planar_left, left, right, weighted });
+        }
+    }
+}
