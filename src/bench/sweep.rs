@@ -5,7 +5,7 @@ use super::configuration::{self, Candidate, Context, Subject};
 use super::environment;
 use super::plan::{self, Plan};
 use super::verify::Verifier;
-use crate::accel::{Built, Selection, Structure};
+use crate::accel::{Built, Selection};
 use crate::backend::{Backend, Interrupted, Prepared, Size};
 use crate::error::{Error, Result};
 use crate::results::journal::{self, Journal, JournalWriter};
@@ -146,14 +146,11 @@ impl Sweep<'_, '_> {
         // The reference is traced through this tree, and confirmed by brute force (see `verify`).
         let reference_selection = Selection::parse("bvh")?;
         let reference = reference_selection.build(&scene, self.threads)?;
-        let Structure::Bvh(reference_tree) = &reference.structure else {
-            return Err(Error::Device("the reference structure is no BVH".into()));
-        };
         let mut subject = Subject {
             scene: &scene,
             record: plan::scene_record(&scene),
             paths: paths?,
-            verifier: Verifier::new(&scene, reference_tree),
+            verifier: Verifier::new(&scene, &reference.structure)?,
             images: HashMap::new(),
         };
         // Each distinct tree is built once, serves all traversals over it, and is freed before the next is built.
