@@ -7,6 +7,7 @@ use crate::bench::environment;
 use crate::bench::plan::{Plan, Request};
 use crate::bench::sweep::{self, Job};
 use crate::error::{Error, Result};
+use crate::results::record::Status;
 use crate::results::{files, table};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -133,14 +134,18 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         output::print(&table::run(&outcome.run))?;
         output::print(&format!("results: {}\n", out.display()))?;
     }
-    let (rows, bad) = (outcome.run.configurations.len(), outcome.disagreeing + outcome.failed);
-    if bad == 0 {
+    let rows = outcome.run.configurations.len();
+    let bad = outcome.disagreeing + outcome.failed;
+    let Some(first) = outcome.run.configurations.iter().find(|row| row.status == Status::Error) else {
         return Ok(ExitCode::SUCCESS);
-    }
-    let first = outcome.run.configurations.iter().find(|row| !row.message.is_empty());
-    let first = first.map(|row| format!("{}: {}", table::label(row), row.message)).unwrap_or_default();
-    let verb = if outcome.disagreeing > 0 { "disagreed with the reference or could not run" } else { "could not run" };
-    output::complain(&format!("{bad} of {rows} configurations {verb}; first {first}"));
+    };
+    let what = match (outcome.disagreeing, outcome.failed) {
+        (_, 0) => "disagreed with the reference".to_owned(),
+        (0, _) => "could not run".to_owned(),
+        (wrong, failed) => format!("have no result: {wrong} disagreed with the reference, {failed} could not run"),
+    };
+    let first = format!("{}: {}", table::label(first), first.message);
+    output::complain(&format!("{bad} of {rows} configurations {what}; the first: {first}"));
     Ok(ExitCode::from(if outcome.disagreeing > 0 { 1 } else { 2 }))
 }
 

@@ -323,7 +323,7 @@ pub struct ConfigurationRecord {
     pub timing_source: Option<TimingSource>,
     /// Every timed frame.
     pub samples: Option<Samples>,
-    /// Seconds spent on verification.
+    /// Seconds spent on verification; that of the small image counts for the first size.
     pub verification_s: f64,
     /// Seconds spent on counting.
     pub counting_s: f64,

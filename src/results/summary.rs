@@ -139,6 +139,7 @@ pub fn frame_statistics(record: &ConfigurationRecord) -> Option<FrameStatistics>
 impl Row {
     /// The row of one configuration.
     pub fn new(device: &DeviceInfo, record: &ConfigurationRecord) -> Row {
+        type Count = fn(&CounterSums) -> u64;
         // An error row has no time, whatever the journal may hold.
         let samples = record.samples.as_ref().filter(|_| record.status == Status::Ok);
         let frame = samples.and_then(|_| frame_statistics(record));
@@ -146,14 +147,12 @@ impl Row {
         let ms = |value: fn(&FrameStatistics) -> f64| frame.as_ref().map(|f| round(value(f), 6));
         let rays = |kind: usize| record.counters.as_ref().map(|c| c[kind].rays);
         let total_rays = record.counters.as_ref().map(|c| c.iter().map(|sums| sums.rays).sum::<u64>());
-        let per_ray = |kind: usize, value: fn(&CounterSums) -> u64| {
+        let per_ray = |kind: usize, value: Count| {
             let sums = &record.counters.as_ref()?[kind];
             (sums.rays > 0).then(|| round(value(sums) as f64 / sums.rays as f64, 4))
         };
-        let (steps, tests, restarts): (fn(&CounterSums) -> u64, fn(&CounterSums) -> u64, fn(&CounterSums) -> u64) =
-            (CounterSums::steps, |s| s.tests, |s| s.restarts);
-        let (inner, leaves, pops): (fn(&CounterSums) -> u64, fn(&CounterSums) -> u64, fn(&CounterSums) -> u64) =
-            (|s| s.inner, |s| s.leaves, |s| s.pops);
+        let (steps, tests, restarts): (Count, Count, Count) = (CounterSums::steps, |s| s.tests, |s| s.restarts);
+        let (inner, leaves, pops): (Count, Count, Count) = (|s| s.inner, |s| s.leaves, |s| s.pops);
         Row {
             device: device.name.clone(),
             device_type: device.device_type,
