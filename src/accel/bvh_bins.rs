@@ -5,6 +5,7 @@
 
 use super::prims::{CHUNK, Prim};
 use crate::math::Aabb;
+use bytemuck::Zeroable;
 use glam::{Vec3A, Vec4};
 use rayon::prelude::*;
 
@@ -15,7 +16,7 @@ pub const MAX_BINS: usize = 32;
 ///
 /// The centroid is the mean of the three corners and not the centre of the box: that is what explains the published
 /// node counts (bunny 43,500 against 42,454 of 45,814 nodes), though box centres give trees that are 2 % better.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Zeroable)]
 #[repr(C)]
 pub struct Item {
     /// Box and index.

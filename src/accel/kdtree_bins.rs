@@ -6,6 +6,7 @@
 use super::kdtree_build::Split;
 use super::prims::{CHUNK, Prim};
 use crate::math::Aabb;
+use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
 /// Most bins per axis.
@@ -16,34 +17,55 @@ pub const MAX_BINS: usize = 64;
 /// A bin's number is defined by the planes themselves (the multiplication is a first guess, mended by comparing), so
 /// that counting by bins and comparing a box with the chosen plane cannot disagree, whatever rounding does.
 struct Axis {
-    /// `planes[b]` lies below bin `b`; `planes[0]` is below everything.
-    planes: [f32; MAX_BINS],
+    /// `planes[b]` lies below bin `b`; `planes[0]` is below everything, the one behind the last bin above everything.
+    planes: [f32; MAX_BINS + 1],
     bins: usize,
-    min: f32,
-    scale: f32,
 }
 
 impl Axis {
     fn new(min: f32, max: f32, bins: usize) -> Axis {
-        let mut planes = [f32::NEG_INFINITY; MAX_BINS];
+        let mut planes = [f32::INFINITY; MAX_BINS + 1];
+        planes[0] = f32::NEG_INFINITY;
         let (lo, hi) = (f64::from(min), f64::from(max));
         for (b, plane) in planes[..bins].iter_mut().enumerate().skip(1) {
             *plane = (lo + (hi - lo) * b as f64 / bins as f64) as f32;
         }
-        Axis { planes, bins, min, scale: (bins as f64 / (hi - lo).max(f64::MIN_POSITIVE)) as f32 }
+        Axis { planes, bins }
     }
 
     /// How many planes lie at or below `x`: the bin in which a box that begins at `x` begins.
     #[inline(always)]
-    fn bin(&self, x: f32) -> usize {
-        let mut bin = (((x - self.min) * self.scale) as usize).min(self.bins - 1) % MAX_BINS;
-        while bin + 1 < self.bins && self.planes[bin + 1] <= x {
+    fn bin(&self, x: f32, guess: u32) -> usize {
+        let mut bin = guess as usize % MAX_BINS;
+        while self.planes[bin + 1] <= x && bin + 1 < self.bins {
             bin += 1;
         }
         while self.planes[bin] > x {
             bin -= 1;
         }
         bin
+    }
+}
+
+/// First guesses for the bins of three coordinates at once.
+struct Guess {
+    min: Vec4,
+    scale: Vec4,
+    most: Vec4,
+}
+
+impl Guess {
+    fn new(cell: &Aabb, bins: usize) -> Guess {
+        let extent = cell.max - cell.min;
+        let scale = Vec3::select(extent.cmpgt(Vec3::ZERO), bins as f32 / extent, Vec3::ZERO).min(Vec3::splat(f32::MAX));
+        Guess { min: cell.min.extend(0.0), scale: scale.extend(0.0), most: Vec4::splat(bins as f32 - 0.01) }
+    }
+
+    /// The number is pushed into the low mantissa bits of a float: `2^15 + x` has the bits of `x * 256`.
+    #[inline(always)]
+    fn of(&self, corner: Vec4) -> [u32; 4] {
+        let x = ((corner - self.min) * self.scale).max(Vec4::ZERO).min(self.most) + Vec4::splat(32_768.0);
+        x.to_array().map(|f| f.to_bits() >> 8)
     }
 }
 
@@ -73,11 +95,13 @@ impl Counts {
 /// The cheapest of the planes between `bins` equal slices of the cell, on any axis.
 pub(super) fn find(prims: &[Prim], cell: &Aabb, bins: usize) -> Option<Split> {
     let axes = [0, 1, 2].map(|a| Axis::new(cell.min[a], cell.max[a], bins));
+    let guess = Guess::new(cell, bins);
     let count = |chunk: &[Prim]| {
         let mut counts = [Counts::ZERO; 3];
         for prim in chunk {
+            let (min_guess, max_guess) = (guess.of(prim.min), guess.of(prim.max));
             for (a, (axis, counts)) in axes.iter().zip(&mut counts).enumerate() {
-                let (begin, top) = (axis.bin(prim.min[a]), axis.bin(prim.max[a]));
+                let (begin, top) = (axis.bin(prim.min[a], min_guess[a]), axis.bin(prim.max[a], max_guess[a]));
                 // A box that ends in a plane ends below it. There is no plane below bin 0.
                 let end = top - usize::from(axis.planes[top] == prim.max[a]);
                 counts.begin[begin] += 1;
@@ -113,7 +137,7 @@ fn sweep(a: usize, axis: &Axis, counts: &Counts, triangles: usize, cell: &Aabb, 
 
 /// The areas of both sides of a plane, as functions of its coordinate.
 pub(super) struct Sides {
-    axis: usize,
+    pub axis: usize,
     min: f32,
     max: f32,
     /// Area of the plane's section of the cell.
@@ -129,14 +153,21 @@ impl Sides {
         Sides { axis, min: cell.min[axis], max: cell.max[axis], section: u * v, rim: u + v }
     }
 
+    /// Half areas on the left and on the right of a plane.
+    #[inline(always)]
+    pub fn areas(&self, plane: f32) -> (f64, f64) {
+        let left = self.section + self.rim * (f64::from(plane) - f64::from(self.min));
+        let right = self.section + self.rim * (f64::from(self.max) - f64::from(plane));
+        (left, right)
+    }
+
     /// Takes the plane if it is cheaper than the best so far; never one on the border of the cell.
     #[inline(always)]
     pub fn offer(&self, plane: f32, left: usize, planar: usize, right: usize, best: &mut Option<Split>) {
         if !(plane > self.min && plane < self.max) {
             return;
         }
-        let left_area = self.section + self.rim * (f64::from(plane) - f64::from(self.min));
-        let right_area = self.section + self.rim * (f64::from(self.max) - f64::from(plane));
+        let (left_area, right_area) = self.areas(plane);
         let planar_left = left_area <= right_area;
         let (left, right) = if planar_left { (left + planar, right) } else { (left, right + planar) };
         let weighted = left_area * left as f64 + right_area * right as f64;

@@ -9,6 +9,7 @@ use super::kdtree_bins::Sides;
 use super::kdtree_build::{Builder, Split, Subtree, halves};
 use super::prims::Prim;
 use crate::math::Aabb;
+use std::ops::Range;
 
 /// A triangle's box begins, lies or ends in a plane. Sorts by coordinate, then in the order in which a sweep needs them.
 ///
@@ -54,7 +55,8 @@ pub(super) fn build(builder: &Builder, prims: &[Prim], cell: Aabb, depth: u32) -
         locals: (0..prims.len() as u32).collect(),
         events: Default::default(),
         side: vec![0; prims.len()],
-        scratch: Vec::new(),
+        local_scratch: Vec::new(),
+        event_scratch: Vec::new(),
         out: Subtree::default(),
     };
     for axis in 0..3 {
@@ -100,7 +102,8 @@ struct Sweep<'a> {
     events: [Vec<Event>; 3],
     /// Where a triangle goes, while its node is being split.
     side: Vec<u8>,
-    scratch: Vec<Event>,
+    local_scratch: Vec<u32>,
+    event_scratch: Vec<Event>,
     out: Subtree,
 }
 
@@ -151,19 +154,12 @@ impl Sweep<'_> {
             let events = &self.events[axis][node.events[axis]..];
             let sides = Sides::new(&node.cell, axis);
             let begun_inside = events.iter().filter(|&&e| kind(e) != END).count();
-            let (mut left, mut right) = (count - begun_inside, count);
-            let mut i = 0;
-            while i < events.len() {
-                let here = events[i] >> 32;
-                let mut kinds = [0_usize; 4];
-                while i < events.len() && events[i] >> 32 == here {
-                    kinds[kind(events[i]) as usize] += 1;
-                    i += 1;
-                }
-                let [ended, planar, begun, _] = kinds;
-                right -= ended + planar;
-                sides.offer(coordinate(here << 32), left, planar, right, &mut best);
-                left += planar + begun;
+            let planar = events.iter().filter(|&&e| kind(e) == PLANAR).count();
+            let begun_before = count - begun_inside;
+            if planar == 0 {
+                sweep(events, &sides, begun_before, count, &mut best);
+            } else {
+                sweep_with_planar(events, &sides, begun_before, count, &mut best);
             }
         }
         best
@@ -171,97 +167,134 @@ impl Sweep<'_> {
 
     /// Puts the children's lists on the stacks, the left one on top.
     fn divide(&mut self, node: &Node, split: &Split) -> (Node, Node) {
-        self.classify(node, split);
-        let (left_cell, right_cell) = halves(&node.cell, split);
+        let own = &self.events[split.axis][node.events[split.axis]..];
+        let plane = u64::from(ordered(split.plane));
+        let below = own.partition_point(|&e| e >> 32 < plane);
+        let here = below + own[below..].partition_point(|&e| e >> 32 == plane);
+        self.classify(node, split, below, here);
+
         let right_locals = self.locals.len();
-        let own = node.locals..right_locals;
-        for side in [RIGHT, LEFT] {
-            for i in own.clone() {
-                let l = self.locals[i];
-                if self.side[l as usize] & side != 0 {
-                    self.locals.push(l);
-                }
-            }
-        }
+        let side = &self.side;
+        fork(&mut self.locals, node.locals, &mut self.local_scratch, |l| side[l as usize]);
         let left_locals = right_locals + split.right;
         debug_assert_eq!(self.locals.len(), left_locals + split.left);
 
         let right_events = [0, 1, 2].map(|a| self.events[a].len());
-        let mut left_events = right_events;
-        for axis in 0..3 {
+        let left_events = [0, 1, 2].map(|axis| {
             let own = node.events[axis];
-            left_events[axis] = if axis == split.axis { self.cut(own, split) } else { self.filter(axis, own) };
-        }
+            if axis == split.axis {
+                Self::cut(&mut self.events[axis], own, split, own + below..own + here)
+            } else {
+                fork(&mut self.events[axis], own, &mut self.event_scratch, |e| side[local(e)])
+            }
+        });
+        let (left_cell, right_cell) = halves(&node.cell, split);
         (
             Node { locals: left_locals, events: left_events, cell: left_cell, depth: node.depth + 1 },
             Node { locals: right_locals, events: right_events, cell: right_cell, depth: node.depth + 1 },
         )
     }
 
-    /// Decides where every triangle of the node goes: to both sides unless an event says otherwise.
-    fn classify(&mut self, node: &Node, split: &Split) {
+    /// Decides where every triangle of the node goes: to both sides unless an event says otherwise. The node's events
+    /// on the split axis lie below, in (`below..here`), and above the plane.
+    fn classify(&mut self, node: &Node, split: &Split, below: usize, here: usize) {
         for &l in &self.locals[node.locals..] {
             self.side[l as usize] = LEFT | RIGHT;
         }
-        let plane = ordered(split.plane);
-        for &e in &self.events[split.axis][node.events[split.axis]..] {
-            let x = (e >> 32) as u32;
-            let side = &mut self.side[local(e)];
-            match kind(e) {
-                END if x <= plane => *side = LEFT,
-                START if x >= plane => *side = RIGHT,
-                PLANAR if x < plane || (x == plane && split.planar_left) => *side = LEFT,
-                PLANAR => *side = RIGHT,
-                _ => {}
-            }
+        let own = &self.events[split.axis][node.events[split.axis]..];
+        // What has ended below does not reach the right; what begins above does not reach the left.
+        for &e in &own[..below] {
+            self.side[local(e)] &= LEFT | if kind(e) == START { RIGHT } else { 0 };
+        }
+        for &e in &own[here..] {
+            self.side[local(e)] &= RIGHT | if kind(e) == END { LEFT } else { 0 };
+        }
+        for &e in &own[below..here] {
+            let left = kind(e) == END || (kind(e) == PLANAR && split.planar_left);
+            self.side[local(e)] = if left { LEFT } else { RIGHT };
         }
     }
 
-    /// Events of the split axis: those below the plane go left, those above go right, and those in the plane are now
-    /// on the border, where only planar triangles are remembered. Returns where the left list begins.
-    fn cut(&mut self, own: usize, split: &Split) -> usize {
-        let events = &mut self.events[split.axis];
-        let plane = u64::from(ordered(split.plane));
+    /// Events of the split axis: those below the plane go left, those above go right, and those in the plane (`here`)
+    /// are on the border now, where only planar triangles are remembered. Returns where the left list begins.
+    fn cut(events: &mut Vec<Event>, own: usize, split: &Split, here: Range<usize>) -> usize {
         let end = events.len();
-        let below = own + events[own..].partition_point(|&e| e >> 32 < plane);
-        let above = own + events[own..].partition_point(|&e| e >> 32 <= plane);
-        let planar_from = below + events[below..above].partition_point(|&e| kind(e) < PLANAR);
-        let planar_to = below + events[below..above].partition_point(|&e| kind(e) <= PLANAR);
-        let planar = planar_from..planar_to;
+        let planar_from = here.start + events[here.clone()].partition_point(|&e| kind(e) < PLANAR);
+        let planar_to = here.start + events[here.clone()].partition_point(|&e| kind(e) <= PLANAR);
         if !split.planar_left {
-            events.extend_from_within(planar.clone());
+            events.extend_from_within(planar_from..planar_to);
         }
-        events.extend_from_within(above..end);
+        events.extend_from_within(here.end..end);
         let left = events.len();
-        events.extend_from_within(own..below);
+        events.extend_from_within(own..here.start);
         if split.planar_left {
-            events.extend_from_within(planar);
+            events.extend_from_within(planar_from..planar_to);
         }
         left
     }
+}
 
-    /// Events of another axis: each goes where its triangle goes. Every event is written to both lists, and only the
-    /// lists that it belongs to advance: no branch to mispredict. Returns where the left list begins.
-    fn filter(&mut self, axis: usize, own: usize) -> usize {
-        let events = &mut self.events[axis];
-        let start = events.len();
-        let count = start - own;
-        events.resize(start + count, 0);
-        if self.scratch.len() < count {
-            self.scratch.resize(count, 0);
+/// The sweep where no triangle lies in a plane of its axis: every event is a candidate by itself.
+///
+/// Of several events in one plane, all but the last end and the first start see too many triangles on one side, and so
+/// cost more than the plane does; they need no care.
+#[inline(always)]
+fn sweep(events: &[Event], sides: &Sides, begun_before: usize, count: usize, best: &mut Option<Split>) {
+    let (mut left, mut right) = (begun_before as f64, count as f64);
+    let mut cheapest = (best.map_or(f64::INFINITY, |b| b.weighted), 0.0, 0.0, 0);
+    for &e in events {
+        let start = (e >> 31 & 1) as f64;
+        right -= 1.0 - start;
+        let (left_area, right_area) = sides.areas(coordinate(e));
+        let weighted = left_area * left + right_area * right;
+        if weighted < cheapest.0 {
+            cheapest = (weighted, left, right, e);
         }
-        let (source, right_out) = events[own..].split_at_mut(count);
-        let left_out = &mut self.scratch[..count];
-        let (mut left, mut right) = (0, 0);
-        for &e in source.iter() {
-            let side = self.side[local(e)];
-            left_out[left] = e;
-            right_out[right] = e;
-            left += usize::from(side & LEFT);
-            right += usize::from(side >> 1);
-        }
-        events.truncate(start + right);
-        events.extend_from_slice(&self.scratch[..left]);
-        start + right
+        left += start;
     }
+    let (weighted, left, right, e) = cheapest;
+    if best.is_none_or(|b| weighted < b.weighted) && weighted < f64::INFINITY {
+        let (left, right) = (left as usize, right as usize);
+        *best = Some(Split { axis: sides.axis, plane: coordinate(e), planar_left: true, left, right, weighted });
+    }
+}
+
+/// The sweep by groups of events in one plane: ends and planar triangles leave the right before the plane is judged,
+/// planar ones and starts enter the left after it.
+#[cold]
+fn sweep_with_planar(events: &[Event], sides: &Sides, begun_before: usize, count: usize, best: &mut Option<Split>) {
+    let (mut left, mut right) = (begun_before, count);
+    for group in events.chunk_by(|a, b| a >> 32 == b >> 32) {
+        let of_kind = |k| group.iter().filter(|&&e| kind(e) == k).count();
+        let planar = of_kind(PLANAR);
+        right -= of_kind(END) + planar;
+        sides.offer(coordinate(group[0]), left, planar, right, best);
+        left += planar + of_kind(START);
+    }
+}
+
+/// Puts two lists on a stack, made from the one that begins at `own`: what goes right, and above it what goes left.
+/// Every item is written to both, and only the lists that it belongs to advance: no branch to mispredict. Returns where
+/// the left list begins.
+#[inline(always)]
+fn fork<T: Copy + Default>(stack: &mut Vec<T>, own: usize, scratch: &mut Vec<T>, side: impl Fn(T) -> u8) -> usize {
+    let start = stack.len();
+    let count = start - own;
+    stack.resize(start + count, T::default());
+    if scratch.len() < count {
+        scratch.resize(count, T::default());
+    }
+    let (source, right_out) = stack[own..].split_at_mut(count);
+    let left_out = &mut scratch[..count];
+    let (mut left, mut right) = (0, 0);
+    for &item in source.iter() {
+        let side = side(item);
+        left_out[left] = item;
+        right_out[right] = item;
+        left += usize::from(side & LEFT);
+        right += usize::from(side >> 1);
+    }
+    stack.truncate(start + right);
+    stack.extend_from_slice(&scratch[..left]);
+    start + right
 }

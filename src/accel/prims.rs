@@ -4,6 +4,7 @@ use super::Record;
 use crate::error::{Error, Result};
 use crate::math::Aabb;
 use crate::scene::Scene;
+use bytemuck::Zeroable;
 use glam::{Vec3A, Vec4};
 use rayon::prelude::*;
 
@@ -23,7 +24,7 @@ const TAG: u32 = 0x4000_0000;
 ///
 /// The fourth lanes are `min: 1.0` and `max: index + 0x40000000` as bits; arithmetic on whole rows may do with them
 /// what it likes, since only copies are ever asked for the index.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Zeroable)]
 #[repr(C)]
 pub struct Prim {
     /// Smallest corner.
@@ -71,6 +72,16 @@ pub fn prim(scene: &Scene, index: u32) -> Option<Prim> {
 
 /// The boxes of all triangles that can be hit, in scene order.
 pub fn prims(scene: &Scene) -> Result<Vec<Prim>> {
+    gather(scene, Prim::NONE, |prim| prim, |prim| prim)
+}
+
+/// Something made of the box of every triangle that can be hit, in scene order. `none` must hold [`Prim::NONE`].
+pub(super) fn gather<T: Copy + Send + Sync>(
+    scene: &Scene,
+    none: T,
+    make: impl Fn(Prim) -> T + Sync,
+    prim_of: impl Fn(&T) -> &Prim + Sync,
+) -> Result<Vec<T>> {
     let count = scene.triangles.len();
     if count >= MAX_TRIANGLES {
         return Err(Error::argument(
@@ -79,23 +90,28 @@ pub fn prims(scene: &Scene) -> Result<Vec<Prim>> {
             "use a smaller scene",
         ));
     }
-    let mut prims: Vec<Prim> =
-        (0..count as u32).into_par_iter().with_min_len(CHUNK).map(|i| prim(scene, i).unwrap_or(Prim::NONE)).collect();
-    let none = Prim::NONE.max.w;
-    if prims.par_iter().with_min_len(CHUNK).any(|p| p.max.w == none) {
-        prims.retain(|p| p.max.w != none);
+    let indices = (0..count as u32).into_par_iter().with_min_len(CHUNK);
+    let mut items: Vec<T> = indices.map(|i| prim(scene, i).map_or(none, &make)).collect();
+    let is_none = |item: &T| prim_of(item).max.w == Prim::NONE.max.w;
+    if items.par_iter().with_min_len(CHUNK).any(is_none) {
+        items.retain(|item| !is_none(item));
     }
-    Ok(prims)
+    Ok(items)
 }
 
 /// The box around some prims; [`Aabb::EMPTY`] around none.
 pub fn bounds(prims: &[Prim]) -> Aabb {
-    let around = |chunk: &[Prim]| {
+    bounds_by(prims, |prim| prim)
+}
+
+pub(super) fn bounds_by<T: Sync>(items: &[T], prim_of: impl Fn(&T) -> &Prim + Sync) -> Aabb {
+    let around = |chunk: &[T]| {
         let start = (Vec4::INFINITY, Vec4::NEG_INFINITY);
-        chunk.iter().fold(start, |(min, max), p| (min.min(p.min), max.max(p.max)))
+        chunk.iter().map(&prim_of).fold(start, |(min, max), p| (min.min(p.min), max.max(p.max)))
     };
-    let boxes: Vec<_> = prims.par_chunks(CHUNK).map(around).collect();
-    boxes.into_iter().fold(Aabb::EMPTY, |b, (min, max)| b.union(Aabb { min: min.truncate(), max: max.truncate() }))
+    let boxes: Vec<_> = items.par_chunks(CHUNK).map(around).collect();
+    let aabb = |(min, max): (Vec4, Vec4)| Aabb { min: min.truncate(), max: max.truncate() };
+    boxes.into_iter().fold(Aabb::EMPTY, |all, rows| all.union(aabb(rows)))
 }
 
 /// The record of triangle `index`.

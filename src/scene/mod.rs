@@ -3,10 +3,29 @@
 //! [`Scene`] is the only thing that the rest of the crate sees of a file. [`load`] finds a reader by extension, or a
 //! procedural scene by name; adding a format is one file and one line in [`FORMATS`].
 
-use crate::error::Result;
+pub mod normals;
+pub mod ply;
+pub mod procedural;
+mod suggest;
+
+use crate::error::{Error, Result};
 use crate::math::{Aabb, Vertex};
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec3, Vec3A};
+pub use procedural::{Parameter, SceneInfo, list};
+use std::path::Path;
+pub(crate) use suggest::did_you_mean;
+
+/// Most vertices, and most triangles, that a scene may have (2^27): indices, node links and byte sizes then fit into 32
+/// bits everywhere.
+pub const MAX_ELEMENTS: usize = 1 << 27;
+
+/// A reader: the scene in a file. It need not set `name`, nor `materials` if the format has none, nor count degenerate
+/// triangles; [`load`] does.
+pub type Reader = fn(&Path) -> Result<Scene>;
+
+/// Readers by file extension (lower case).
+pub const FORMATS: &[(&str, Reader)] = &[("ply", ply::read)];
 
 /// One triangle: three vertices and a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
@@ -40,6 +59,11 @@ impl Material {
     /// A matt material of one colour, with a little ambient light.
     pub fn matt(diffuse: Vec3) -> Material {
         Material { ambient: diffuse * 0.1, reflectivity: 0.0, diffuse, exponent: 1.0, specular: Vec3::ZERO, pad: 0.0 }
+    }
+
+    /// What a scene without materials of its own is made of: a light warm grey with a soft highlight, no mirror.
+    pub fn neutral() -> Material {
+        Material::matt(Vec3::new(0.72, 0.70, 0.66)).shiny(Vec3::splat(0.25), 24.0, 0.0)
     }
 
     /// With a highlight and a mirror's share.
@@ -103,9 +127,153 @@ impl Scene {
     pub fn bounds(&self) -> Aabb {
         Aabb::from_points(self.triangles.iter().flat_map(|t| t.vertices).map(|v| self.vertices[v as usize].position))
     }
+
+    /// Checks the invariants that everything behind the readers relies on.
+    ///
+    /// # Errors
+    /// [`Error::Input`] that names the scene and the first invariant that does not hold.
+    pub fn check(&self) -> Result<()> {
+        self.first_fault().map_or(Ok(()), |(problem, mend)| Err(Error::argument(self.name.clone(), problem, mend)))
+    }
+
+    /// The first invariant that does not hold: problem and mend.
+    fn first_fault(&self) -> Option<(String, &'static str)> {
+        if self.triangles.is_empty() {
+            return Some(("there is no triangle".into(), "a scene needs at least one"));
+        }
+        for (count, what) in [(self.vertices.len(), "vertices"), (self.triangles.len(), "triangles")] {
+            if count > MAX_ELEMENTS {
+                let problem = format!("{count} {what} are more than rtbench handles ({MAX_ELEMENTS})");
+                return Some((problem, "simplify the scene"));
+            }
+        }
+        let (vertices, materials) = (self.vertices.len() as u32, self.materials.len() as u32);
+        if let Some(i) = self.triangles.iter().position(|t| t.vertices.iter().any(|&v| v >= vertices)) {
+            let problem = format!("triangle {i} uses a vertex beyond the {vertices} that there are");
+            return Some((problem, "repair the triangle's indices"));
+        }
+        if let Some(i) = self.triangles.iter().position(|t| t.material >= materials) {
+            let problem = format!("triangle {i} uses a material beyond the {materials} that there are");
+            return Some((problem, "repair the triangle's material"));
+        }
+        if let Some(i) = self.vertices.iter().position(|v| !v.position.is_finite() || !v.normal.is_finite()) {
+            return Some((format!("vertex {i} is not finite"), "remove it or repair the export"));
+        }
+        if !self.bounds().diagonal().is_finite() {
+            return Some(("the scene is too large: its diagonal is not finite".into(), "scale it down"));
+        }
+        let colours = |m: &Material| [m.ambient, m.diffuse, m.specular];
+        let sound = |m: &Material| {
+            colours(m).iter().all(|c| c.is_finite() && c.min_element() >= 0.0)
+                && (0.0..=1.0).contains(&m.reflectivity)
+                && m.exponent.is_finite()
+                && m.exponent >= 0.0
+        };
+        if let Some(i) = self.materials.iter().position(|m| !sound(m)) {
+            let problem = format!("material {i} is outside of its range");
+            return Some((problem, "colours and the exponent are finite and not negative, reflectivity is 0 to 1"));
+        }
+        if let Some(i) = self.lights.iter().position(|l| !l.position.is_finite() || !l.colour.is_finite()) {
+            return Some((format!("light {i} is not finite"), "give it a finite position and colour"));
+        }
+        None
+    }
+
+    /// BLAKE3 of all that decides what is traced and shaded, hexadecimal: vertices, triangles, materials, lights and
+    /// background, each with its number. Equal on all machines with the same byte order.
+    pub fn content_hash(&self) -> String {
+        let background = [self.background];
+        let parts: [&[u8]; 5] = [
+            bytemuck::cast_slice(&self.vertices),
+            bytemuck::cast_slice(&self.triangles),
+            bytemuck::cast_slice(&self.materials),
+            bytemuck::cast_slice(&self.lights),
+            bytemuck::cast_slice(&background),
+        ];
+        let mut hasher = blake3::Hasher::new();
+        for part in parts {
+            hasher.update(&(part.len() as u64).to_le_bytes());
+            hasher.update(part);
+        }
+        hasher.finalize().to_hex().to_string()
+    }
+
+    /// The share of the surface's area that is a mirror (reflectivity above 0), 0 to 1.
+    pub fn mirror_share(&self) -> f32 {
+        let (mut mirrors, mut all) = (0.0f64, 0.0f64);
+        for triangle in &self.triangles {
+            let [a, b, c] = triangle.vertices.map(|v| self.vertices[v as usize].position.as_dvec3());
+            let area = (b - a).cross(c - a).length();
+            all += area;
+            if self.materials[triangle.material as usize].reflectivity > 0.0 {
+                mirrors += area;
+            }
+        }
+        if all > 0.0 { (mirrors / all) as f32 } else { 0.0 }
+    }
+
+    /// Gives what a reader may leave open (a material, the number of degenerate triangles) and checks the rest; a fault
+    /// comes back as problem and mend.
+    fn complete(&mut self) -> Result<(), (String, &'static str)> {
+        if self.materials.is_empty() {
+            self.materials.push(Material::neutral());
+        }
+        self.first_fault().map_or(Ok(()), Err)?;
+        let vertices = &self.vertices;
+        let degenerate = |t: &&Triangle| normals::is_degenerate(t.vertices.map(|v| vertices[v as usize].position));
+        self.degenerate_triangles = self.triangles.iter().filter(degenerate).count();
+        Ok(())
+    }
 }
 
 /// Loads a scene: a file by its extension, or a procedural scene by `name[:key=value,...]`.
-pub fn load(_what: &str) -> Result<Scene> {
-    unimplemented!()
+///
+/// `what` is a file if one of that name exists, or if it contains a path separator or ends in a known extension.
+///
+/// # Errors
+/// [`Error::Input`] for whatever is wrong with the name, the parameters or the file.
+pub fn load(what: &str) -> Result<Scene> {
+    let path = Path::new(what);
+    let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
+    let reader = FORMATS.iter().find(|(known, _)| Some(*known) == extension.as_deref()).map(|(_, reader)| reader);
+    let is_file = reader.is_some() || what.contains(['/', std::path::MAIN_SEPARATOR]) || path.exists();
+    if !is_file {
+        let mut scene = procedural::build(what)?;
+        scene.complete().map_err(|(problem, mend)| Error::argument(what, problem, mend))?;
+        return Ok(scene);
+    }
+    let Some(reader) = reader else {
+        if !path.exists() {
+            return Err(Error::file(path, None, "no such file", "check the path"));
+        }
+        let known: Vec<&str> = FORMATS.iter().map(|(extension, _)| *extension).collect();
+        return Err(Error::file(
+            path,
+            None,
+            "the format is unknown: formats are told by the file's extension",
+            format!("known extensions: {}", known.join(", ")),
+        ));
+    };
+    let mut scene = reader(path)?;
+    if scene.name.is_empty() {
+        scene.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    }
+    scene.complete().map_err(|(problem, mend)| Error::file(path, None, problem, mend))?;
+    Ok(scene)
+}
+
+/// The bytes of a file.
+fn read_file(path: &Path) -> Result<Vec<u8>> {
+    let fault = |problem: String, mend| Error::file(path, None, problem, mend);
+    match std::fs::metadata(path) {
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
+            return Err(fault("no such file".into(), "check the path"));
+        }
+        Err(e) => return Err(fault(format!("cannot be read: {e}"), "check the path and its permissions")),
+        Ok(metadata) if !metadata.is_file() => {
+            return Err(fault("not a regular file".into(), "name a file that holds a scene"));
+        }
+        Ok(_) => {}
+    }
+    std::fs::read(path).map_err(|e| fault(format!("cannot be read: {e}"), "check its permissions"))
 }

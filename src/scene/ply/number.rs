@@ -1,0 +1,138 @@
+//! Numbers at the start of a slice of bytes, without copying; each function returns the value and its length.
+//!
+//! Almost every coordinate in a file has few digits. Then the mantissa and the power of ten are both exact floats, and
+//! one multiplication or division rounds correctly (Clinger 1990); the rest goes to the standard library. Both ways
+//! give the same bits.
+
+/// Powers of ten that are exact in single precision (5^10 < 2^24).
+const EXACT_F32: [f32; 11] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10];
+
+/// Powers of ten that are exact in double precision (5^22 < 2^53).
+const EXACT_F64: [f64; 23] = [
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20,
+    1e21, 1e22,
+];
+
+/// Length of the token at the start: everything above the space.
+#[inline]
+pub fn token_length(bytes: &[u8]) -> usize {
+    bytes.iter().position(|&b| b <= b' ').unwrap_or(bytes.len())
+}
+
+/// True where a token ends.
+#[inline(always)]
+fn ends(bytes: &[u8], at: usize) -> bool {
+    bytes.get(at).is_none_or(|&b| b <= b' ')
+}
+
+/// A plain decimal: digits with at most one point, no exponent, at most 19 digits.
+struct Decimal {
+    negative: bool,
+    mantissa: u64,
+    /// Digits after the point.
+    places: usize,
+    length: usize,
+}
+
+#[inline(always)]
+fn decimal(bytes: &[u8]) -> Option<Decimal> {
+    let negative = bytes.first() == Some(&b'-');
+    let mut at = usize::from(negative);
+    let mut mantissa = 0u64;
+    let start = at;
+    while let Some(digit) = bytes.get(at).map(|b| b.wrapping_sub(b'0')).filter(|&d| d < 10) {
+        mantissa = mantissa.wrapping_mul(10).wrapping_add(digit.into());
+        at += 1;
+    }
+    let mut digits = at - start;
+    let mut places = 0;
+    if bytes.get(at) == Some(&b'.') {
+        at += 1;
+        let start = at;
+        while let Some(digit) = bytes.get(at).map(|b| b.wrapping_sub(b'0')).filter(|&d| d < 10) {
+            mantissa = mantissa.wrapping_mul(10).wrapping_add(digit.into());
+            at += 1;
+        }
+        places = at - start;
+        digits += places;
+    }
+    ((1..=19).contains(&digits) && ends(bytes, at)).then_some(Decimal { negative, mantissa, places, length: at })
+}
+
+/// A number in single precision, correctly rounded; also infinite or NaN, if the text says so.
+#[inline]
+pub fn float(bytes: &[u8]) -> Option<(f32, usize)> {
+    match decimal(bytes) {
+        Some(d) if d.mantissa <= 1 << 24 && d.places < EXACT_F32.len() => {
+            let value = d.mantissa as f32 / EXACT_F32[d.places];
+            Some((if d.negative { -value } else { value }, d.length))
+        }
+        _ => by_standard_library(bytes),
+    }
+}
+
+/// A number in double precision, correctly rounded; also infinite or NaN, if the text says so.
+#[inline]
+pub fn double(bytes: &[u8]) -> Option<(f64, usize)> {
+    match decimal(bytes) {
+        Some(d) if d.mantissa <= 1 << 53 && d.places < EXACT_F64.len() => {
+            let value = d.mantissa as f64 / EXACT_F64[d.places];
+            Some((if d.negative { -value } else { value }, d.length))
+        }
+        _ => by_standard_library(bytes),
+    }
+}
+
+/// A whole number that fits into 18 digits, and thereby any index.
+#[inline]
+pub fn integer(bytes: &[u8]) -> Option<(i64, usize)> {
+    let negative = bytes.first() == Some(&b'-');
+    let mut at = usize::from(negative || bytes.first() == Some(&b'+'));
+    let start = at;
+    let mut value = 0i64;
+    while let Some(digit) = bytes.get(at).map(|b| b.wrapping_sub(b'0')).filter(|&d| d < 10) {
+        value = value.wrapping_mul(10).wrapping_add(digit.into());
+        at += 1;
+    }
+    ((1..=18).contains(&(at - start)) && ends(bytes, at)).then_some((if negative { -value } else { value }, at))
+}
+
+#[cold]
+fn by_standard_library<T: std::str::FromStr>(bytes: &[u8]) -> Option<(T, usize)> {
+    let length = token_length(bytes);
+    let value = std::str::from_utf8(&bytes[..length]).ok()?.parse().ok()?;
+    Some((value, length))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn agrees_with_the_standard_library() {
+        let texts = "0 -0 1 +1 -.5 .5 5. 1.e5 1e-3 -1E+3 16777216 16777217 0.1 3.4028235e38 1e39 1e-45 0.0503644 \
+            -123456.789012345678 99999999999999999999999 00000000000000000000001 0.00000000001 1e-400 9007199254740993";
+        for text in texts.split_ascii_whitespace() {
+            let line = format!("{text} 7");
+            let expected: f32 = text.parse().unwrap();
+            let (value, length) = float(line.as_bytes()).expect(text);
+            assert_eq!((value.to_bits(), length), (expected.to_bits(), text.len()), "{text}");
+            let expected: f64 = text.parse().unwrap();
+            let (value, length) = double(line.as_bytes()).expect(text);
+            assert_eq!((value.to_bits(), length), (expected.to_bits(), text.len()), "{text}");
+        }
+    }
+
+    #[test]
+    fn refuses_what_is_no_number() {
+        for text in ["", "-", "+", ".", "-.", "1..2", "1,5", "1e", "0x10", "one", "1-", "--1", "1_000"] {
+            assert!(float(text.as_bytes()).is_none(), "{text}");
+            assert!(double(text.as_bytes()).is_none(), "{text}");
+        }
+        for text in ["", "-", "1.0", "1e3", "12a", "1234567890123456789", "+-1"] {
+            assert!(integer(text.as_bytes()).is_none(), "{text}");
+        }
+        assert_eq!(integer(b"-17\n"), Some((-17, 3)));
+        assert_eq!(integer(b"+17"), Some((17, 3)));
+    }
+}

@@ -1,0 +1,416 @@
+//! `room`: a furnished conference room. Blinds, window frames, ceiling bars, skirting boards and chair legs are long thin
+//! triangles (the character of the conference room); chairs, cups and lamps are dense between them.
+
+use super::mesh::{MaterialId, Mesh, fit, segments};
+use super::noise::random;
+use super::shapes::{curve, profile, turn};
+use super::{Parameter, SceneInfo, Values, assemble};
+use crate::scene::{Light, Material, Scene};
+use glam::{Affine3A, Quat, Vec2, Vec3};
+use std::f32::consts::{FRAC_PI_2, PI};
+
+pub(super) const INFO: SceneInfo = SceneInfo {
+    name: "room",
+    character: "furnished room: long thin triangles beside dense chairs, six lights, few mirrors",
+    parameters: &[Parameter::triangles(80_000, 12_000)],
+    build,
+};
+
+/// Half the room's length (x) and width (z), and its height.
+const X: f32 = 6.0;
+const Z: f32 = 4.0;
+const Y: f32 = 3.1;
+/// Windows on the wall z = -Z: middle of each, their size, and the height of their lower edge.
+const WINDOWS: [f32; 3] = [-3.9, 0.0, 3.9];
+const WINDOW: Vec2 = Vec2::new(2.9, 1.7);
+const SILL: f32 = 0.95;
+
+fn build(values: &Values) -> Scene {
+    let mesh = fit(values.triangles(), geometry);
+    let lights = lamps().map(|p| Light::new(p - Vec3::Y * 0.30, Vec3::new(0.20, 0.195, 0.18))).to_vec();
+    assemble(mesh, lights, Vec3::new(0.55, 0.70, 0.90), Some("room"))
+}
+
+/// The lamps' places, on the ceiling.
+fn lamps() -> [Vec3; 6] {
+    [(-3.6, -1.8), (0.0, -1.8), (3.6, -1.8), (-3.6, 1.8), (0.0, 1.8), (3.6, 1.8)].map(|(x, z)| Vec3::new(x, Y, z))
+}
+
+struct Materials {
+    wall: MaterialId,
+    ceiling: MaterialId,
+    carpet: MaterialId,
+    wood: MaterialId,
+    table: MaterialId,
+    white: MaterialId,
+    slat: MaterialId,
+    metal: MaterialId,
+    cloth: MaterialId,
+    china: MaterialId,
+    glass: MaterialId,
+    glow: MaterialId,
+    screen: MaterialId,
+    books: [MaterialId; 4],
+}
+
+fn materials(mesh: &mut Mesh) -> Materials {
+    let matt = |r, g, b| Material::matt(Vec3::new(r, g, b));
+    let mut add = |material| mesh.material(material);
+    Materials {
+        wall: add(matt(0.74, 0.70, 0.62)),
+        ceiling: add(matt(0.80, 0.80, 0.78)),
+        carpet: add(matt(0.22, 0.27, 0.33)),
+        wood: add(matt(0.40, 0.24, 0.12).shiny(Vec3::splat(0.15), 30.0, 0.0)),
+        table: add(matt(0.34, 0.17, 0.08).shiny(Vec3::splat(0.4), 80.0, 0.14)),
+        white: add(matt(0.86, 0.87, 0.88).shiny(Vec3::splat(0.2), 40.0, 0.0)),
+        slat: add(matt(0.78, 0.76, 0.70).shiny(Vec3::splat(0.2), 30.0, 0.0)),
+        metal: add(matt(0.22, 0.22, 0.24).shiny(Vec3::splat(0.8), 90.0, 0.35)),
+        cloth: add(matt(0.13, 0.20, 0.36)),
+        china: add(matt(0.82, 0.80, 0.76).shiny(Vec3::splat(0.5), 80.0, 0.0)),
+        glass: add(matt(0.06, 0.09, 0.12).shiny(Vec3::splat(0.7), 150.0, 0.45)),
+        glow: add(Material { ambient: Vec3::splat(0.98), ..matt(0.3, 0.3, 0.3) }),
+        screen: add(matt(0.07, 0.08, 0.10).shiny(Vec3::splat(0.6), 100.0, 0.15)),
+        books: [
+            add(matt(0.45, 0.12, 0.10)),
+            add(matt(0.12, 0.30, 0.22)),
+            add(matt(0.15, 0.18, 0.40)),
+            add(matt(0.62, 0.50, 0.25)),
+        ],
+    }
+}
+
+fn geometry(mesh: &mut Mesh, detail: f32) {
+    let m = materials(mesh);
+    shell(mesh, &m);
+    for x in WINDOWS {
+        mesh.place = Affine3A::from_translation(Vec3::new(x, SILL, -Z));
+        window(mesh, &m, detail);
+    }
+    mesh.place = Affine3A::IDENTITY;
+    table(mesh, &m, detail);
+    for (place, seed) in chair_places() {
+        mesh.place = place;
+        chair(mesh, &m, detail);
+        // A cup on the table before every other chair, paper before all.
+        mesh.place = Affine3A::from_translation(Vec3::Y * 0.76) * mesh.place;
+        if seed % 2 == 0 {
+            cup(mesh, &m, detail);
+        }
+        mesh.block(m.white, Vec3::new(-0.02, 0.006, 0.62), Vec3::new(0.21, 0.008, 0.29));
+    }
+    mesh.place = Affine3A::IDENTITY;
+    ceiling(mesh, &m, detail);
+    shelf(mesh, &m);
+    board_and_door(mesh, &m, detail);
+}
+
+fn shell(mesh: &mut Mesh, m: &Materials) {
+    let (x, y, z) = (Vec3::X * (2.0 * X), Vec3::Y * Y, Vec3::Z * (2.0 * Z));
+    mesh.quad(m.carpet, Vec3::new(-X, 0.0, -Z), z, x, [6, 9]);
+    mesh.quad(m.ceiling, Vec3::new(-X, Y, -Z), x, z, [9, 6]);
+    mesh.quad(m.wall, Vec3::new(X, 0.0, Z), -x, y, [4, 2]);
+    mesh.quad(m.wall, Vec3::new(-X, 0.0, Z), -z, y, [3, 2]);
+    mesh.quad(m.wall, Vec3::new(X, 0.0, -Z), z, y, [3, 2]);
+    // The wall with the windows is made of what is left between them.
+    let mut piece = |x0: f32, x1: f32, y0: f32, y1: f32| {
+        mesh.quad(m.wall, Vec3::new(x0, y0, -Z), Vec3::X * (x1 - x0), Vec3::Y * (y1 - y0), [1, 1]);
+    };
+    let (low, high) = (SILL, SILL + WINDOW.y);
+    piece(-X, X, 0.0, low);
+    piece(-X, X, high, Y);
+    let mut from = -X;
+    for window in WINDOWS {
+        piece(from, window - WINDOW.x * 0.5, low, high);
+        from = window + WINDOW.x * 0.5;
+    }
+    piece(from, X, low, high);
+    for (center, size) in [
+        (Vec3::new(0.0, 0.06, Z), Vec3::new(2.0 * X - 0.01, 0.12, 0.04)),
+        (Vec3::new(0.0, 0.06, -Z), Vec3::new(2.0 * X - 0.01, 0.12, 0.04)),
+        (Vec3::new(-X, 0.06, 0.0), Vec3::new(0.04, 0.118, 2.0 * Z - 0.01)),
+        (Vec3::new(X, 0.06, 0.0), Vec3::new(0.04, 0.118, 2.0 * Z - 0.01)),
+    ] {
+        mesh.block(m.wood, center, size);
+    }
+}
+
+/// A recessed window with frame, cross bars, panes, sill, and half-open blinds. Origin: middle of the lower edge.
+fn window(mesh: &mut Mesh, m: &Materials, detail: f32) {
+    let (w, h, depth) = (WINDOW.x, WINDOW.y, 0.22);
+    let half = w * 0.5;
+    let (across, up, back) = (Vec3::X * w, Vec3::Y * h, Vec3::Z * depth);
+    // The reveal.
+    mesh.quad(m.white, Vec3::new(-half, 0.0, -depth), back, across, [1, 1]);
+    mesh.quad(m.white, Vec3::new(-half, h, -depth), across, back, [1, 1]);
+    mesh.quad(m.white, Vec3::new(-half, 0.0, -depth), up, back, [1, 1]);
+    mesh.quad(m.white, Vec3::new(half, 0.0, -depth), back, up, [1, 1]);
+    mesh.quad(m.glass, Vec3::new(-half, 0.0, -depth), across, up, [1, 1]);
+    let at = -depth + 0.03;
+    for x in [-half + 0.03, 0.0, half - 0.03] {
+        mesh.block(m.white, Vec3::new(x, h * 0.5, at), Vec3::new(0.06, h - 0.002, 0.058));
+    }
+    for y in [0.03, h * 0.68, h - 0.03] {
+        mesh.block(m.white, Vec3::new(0.0, y, at), Vec3::new(w - 0.002, 0.055, 0.05));
+    }
+    mesh.block(m.white, Vec3::new(0.0, -0.022, 0.07), Vec3::new(w + 0.2, 0.04, 0.30));
+    // Slats: one piece across the whole window, a few across their own curve; both sides are seen.
+    let slats = 34;
+    let pitch = (h - 0.10) / slats as f32;
+    let folds = segments(4.0, detail, 2);
+    for i in 0..slats {
+        let y = h - 0.08 - (i as f32 + 0.5) * pitch;
+        let place = mesh.place;
+        mesh.place = place * Affine3A::from_rotation_translation(Quat::from_rotation_x(0.55), Vec3::new(0.0, y, -0.05));
+        let bow = |t: f32, lift: f32| Vec3::new(0.0, 0.004 * (1.0 - (2.0 * t - 1.0).powi(2)) + lift, (t - 0.5) * 0.05);
+        let left = Vec3::X * (half - 0.02);
+        mesh.surface(m.slat, [folds, 1], [false; 2], |u, v| bow(u, 0.0006) + left * (2.0 * v - 1.0));
+        mesh.surface(m.slat, [folds, 1], [false; 2], |u, v| bow(u, -0.0006) + left * (1.0 - 2.0 * v));
+        mesh.place = place;
+    }
+    mesh.block(m.slat, Vec3::new(0.0, h - 0.035, -0.05), Vec3::new(w - 0.03, 0.06, 0.06));
+    for x in [-half * 0.7, half * 0.7] {
+        mesh.bar(m.white, Vec3::new(x, 0.02, -0.015), Vec3::new(x, h - 0.06, -0.015), 0.003, 4);
+    }
+}
+
+/// The outline of the table: straight along, half circles at the ends.
+fn table_outline(half: f32, radius: f32, around: usize) -> Vec<Vec2> {
+    let end = |from: f32, center: f32| {
+        (0..=around).map(move |i| {
+            let (c, s) = turn(from + 0.5 * i as f32 / around as f32);
+            Vec2::new(center + radius * c, -radius * s)
+        })
+    };
+    end(-0.25, half).chain(end(0.25, -half)).collect()
+}
+
+fn table(mesh: &mut Mesh, m: &Materials, detail: f32) {
+    let around = segments(40.0, detail, 8);
+    mesh.slab(m.table, &table_outline(2.1, 0.85, around), 0.715, 0.76);
+    mesh.slab(m.metal, &table_outline(2.1, 0.80, around), 0.68, 0.716);
+    for x in [-1.7, 1.7] {
+        let foot = [
+            (0.46, 0.0),
+            (0.46, 0.02),
+            (0.30, 0.05),
+            (0.12, 0.09),
+            (0.075, 0.20),
+            (0.07, 0.45),
+            (0.10, 0.64),
+            (0.22, 0.70),
+        ];
+        mesh.place = Affine3A::from_translation(Vec3::new(x, 0.0, 0.0));
+        mesh.lathe(m.metal, &profile(&foot, segments(24.0, detail, 8)), segments(36.0, detail, 8));
+    }
+    // A jug and a bowl in the middle.
+    mesh.place = Affine3A::from_translation(Vec3::new(-0.5, 0.7605, 0.05));
+    let jug = [
+        (0.0, 0.0),
+        (0.05, 0.0),
+        (0.085, 0.03),
+        (0.09, 0.10),
+        (0.06, 0.18),
+        (0.05, 0.23),
+        (0.065, 0.26),
+        (0.06, 0.26),
+        (0.04, 0.22),
+    ];
+    mesh.lathe(m.metal, &profile(&jug, segments(32.0, detail, 10)), segments(32.0, detail, 8));
+    mesh.place = Affine3A::from_translation(Vec3::new(0.45, 0.7605, -0.05));
+    let bowl = [
+        (0.0, 0.0),
+        (0.07, 0.0),
+        (0.08, 0.02),
+        (0.16, 0.07),
+        (0.21, 0.12),
+        (0.205, 0.125),
+        (0.15, 0.075),
+        (0.06, 0.03),
+        (0.0, 0.025),
+    ];
+    mesh.lathe(m.china, &profile(&bowl, segments(32.0, detail, 10)), segments(40.0, detail, 8));
+    for i in 0..5 {
+        let (c, s) = turn(i as f32 / 5.0);
+        mesh.sphere(
+            m.books[if i % 2 == 0 { 0 } else { 3 }],
+            Vec3::new(c * 0.085, 0.085, s * 0.085),
+            0.042,
+            segments(8.0, detail, 2),
+        );
+    }
+    mesh.place = Affine3A::IDENTITY;
+}
+
+/// Chairs around the table, each turned a little; local +z is where the sitter looks. With a running number.
+fn chair_places() -> Vec<(Affine3A, u32)> {
+    let mut places = Vec::new();
+    for i in 0..5 {
+        for side in [-1.0f32, 1.0] {
+            places.push((Vec3::new(i as f32 * 1.0 - 2.0, 0.0, side * 1.22), if side < 0.0 { 0.0 } else { PI }));
+        }
+    }
+    places.push((Vec3::new(-3.35, 0.0, 0.0), FRAC_PI_2));
+    places.push((Vec3::new(3.35, 0.0, 0.0), -FRAC_PI_2));
+    let turned = |(seed, (at, angle)): (usize, (Vec3, f32))| {
+        let angle = angle + (random(seed as u32, 3) - 0.5) * 0.5;
+        (Affine3A::from_rotation_translation(Quat::from_rotation_y(angle), at), seed as u32)
+    };
+    places.into_iter().enumerate().map(turned).collect()
+}
+
+/// A cantilever chair of bent tube with a padded seat and back.
+fn chair(mesh: &mut Mesh, m: &Materials, detail: f32) {
+    let rows = segments(40.0, detail, 12);
+    let around = segments(10.0, detail, 5);
+    for side in [-0.24, 0.24f32] {
+        let tube = [
+            (0.92, -0.25),
+            (0.60, -0.22),
+            (0.46, -0.20),
+            (0.45, 0.0),
+            (0.44, 0.22),
+            (0.36, 0.26),
+            (0.10, 0.25),
+            (0.02, 0.20),
+            (0.013, 0.0),
+            (0.013, -0.22),
+        ];
+        let path: Vec<Vec3> = tube.iter().map(|&(y, z)| Vec3::new(side, y, z)).collect();
+        mesh.tube(m.metal, &curve(&path, rows), |_| 0.012, around);
+        let rest = [(0.62, -0.215), (0.66, -0.12), (0.665, 0.05), (0.64, 0.14), (0.46, 0.20)];
+        let out = side.signum() * 0.03;
+        let path: Vec<Vec3> = rest.iter().map(|&(y, z)| Vec3::new(side + out, y, z)).collect();
+        mesh.tube(m.metal, &curve(&path, rows / 2), |_| 0.010, around);
+        mesh.block(m.wood, Vec3::new(side + out, 0.677, 0.0), Vec3::new(0.045, 0.02, 0.22));
+    }
+    mesh.bar(m.metal, Vec3::new(-0.24, 0.013, -0.22), Vec3::new(0.24, 0.013, -0.22), 0.012, around);
+    let place = mesh.place;
+    mesh.place = place * Affine3A::from_translation(Vec3::new(0.0, 0.475, 0.0));
+    cushion(mesh, m.cloth, Vec3::new(0.225, 0.035, 0.22), detail);
+    mesh.place =
+        place * Affine3A::from_rotation_translation(Quat::from_rotation_x(-1.48), Vec3::new(0.0, 0.76, -0.222));
+    cushion(mesh, m.cloth, Vec3::new(0.225, 0.028, 0.17), detail);
+    mesh.place = place;
+}
+
+/// A padded cushion: a rounded box (superellipsoid), of half lengths `half`.
+fn cushion(mesh: &mut Mesh, material: MaterialId, half: Vec3, detail: f32) {
+    let power = |x: f32, e: f32| x.signum() * x.abs().powf(e);
+    let cells = [segments(48.0, detail, 12), segments(20.0, detail, 6)];
+    mesh.surface(material, cells, [true; 2], |u, v| {
+        let ((c, s), polar) = (turn(u), (v - 0.5) * PI);
+        let ring = power(polar.cos().max(0.0), 0.45);
+        half * Vec3::new(ring * power(c, 0.35), power(polar.sin(), 0.8), -ring * power(s, 0.35))
+    });
+}
+
+/// A cup with a handle on a saucer, in front of a chair.
+fn cup(mesh: &mut Mesh, m: &Materials, detail: f32) {
+    let place = mesh.place;
+    mesh.place = place * Affine3A::from_translation(Vec3::new(0.22, 0.001, 0.62));
+    let around = segments(28.0, detail, 8);
+    let saucer = [(0.0, 0.0), (0.04, 0.0), (0.075, 0.012), (0.073, 0.015), (0.04, 0.005), (0.0, 0.005)];
+    mesh.lathe(m.china, &profile(&saucer, segments(16.0, detail, 6)), around);
+    let cup = [
+        (0.0, 0.008),
+        (0.022, 0.009),
+        (0.034, 0.03),
+        (0.040, 0.07),
+        (0.038, 0.071),
+        (0.031, 0.035),
+        (0.02, 0.015),
+        (0.0, 0.014),
+    ];
+    mesh.lathe(m.china, &profile(&cup, segments(24.0, detail, 8)), around);
+    let handle = [
+        Vec3::new(0.036, 0.060, 0.0),
+        Vec3::new(0.060, 0.058, 0.0),
+        Vec3::new(0.060, 0.036, 0.0),
+        Vec3::new(0.034, 0.028, 0.0),
+    ];
+    mesh.tube(m.china, &curve(&handle, segments(12.0, detail, 5)), |_| 0.0045, segments(8.0, detail, 4));
+    mesh.place = place;
+}
+
+/// Bars that divide the ceiling, and flat lamps with a rim.
+fn ceiling(mesh: &mut Mesh, m: &Materials, detail: f32) {
+    for i in 1..10 {
+        let x = -X + i as f32 * 1.2;
+        mesh.block(m.white, Vec3::new(x, Y - 0.006, 0.0), Vec3::new(0.024, 0.016, 2.0 * Z - 0.01));
+    }
+    for j in 1..7 {
+        let z = -Z + j as f32 * 8.0 / 7.0;
+        mesh.block(m.white, Vec3::new(0.0, Y - 0.005, z), Vec3::new(2.0 * X - 0.01, 0.015, 0.024));
+    }
+    for p in lamps() {
+        mesh.place = Affine3A::from_translation(p);
+        let around = segments(40.0, detail, 10);
+        mesh.lathe_sharp(m.metal, &[(0.30, -0.07), (0.34, -0.07), (0.34, 0.0)], around);
+        mesh.disc(m.glow, Vec3::new(0.0, -0.065, 0.0), -Vec3::Y, 0.31, around);
+    }
+    mesh.place = Affine3A::IDENTITY;
+}
+
+/// Bookshelves on the wall x = -X.
+fn shelf(mesh: &mut Mesh, m: &Materials) {
+    let (depth, width, height) = (0.32, 3.2, 2.1);
+    let x = -X + depth * 0.5 + 0.025;
+    for i in 0..5 {
+        let z = (i as f32 - 2.0) * width / 4.0;
+        mesh.block(m.wood, Vec3::new(x, height * 0.5, z), Vec3::new(depth, height, 0.03));
+    }
+    for level in 0..6 {
+        let y = 0.08 + level as f32 * (height - 0.10) / 5.0;
+        mesh.block(m.wood, Vec3::new(x, y, 0.0), Vec3::new(depth - 0.01, 0.024, width + 0.028));
+        if level == 5 {
+            continue;
+        }
+        for bay in 0..4u32 {
+            let mut z = (bay as f32 - 2.0) * width / 4.0 + 0.03;
+            let end = z + width / 4.0 - 0.10 - 0.25 * random(bay + 4 * level, 5);
+            let mut book = 0;
+            while z < end {
+                let chance = |seed| random(book + 64 * (bay + 4 * level), seed);
+                let (thick, tall, deep) = (0.022 + 0.03 * chance(6), 0.22 + 0.11 * chance(7), 0.17 + 0.06 * chance(8));
+                let corner = Vec3::new(-X + 0.06, y + 0.012, z);
+                let cover = m.books[(chance(9) * 4.0) as usize % 4];
+                mesh.cuboid(cover, corner, corner + Vec3::new(deep, tall, thick));
+                z += thick + 0.002;
+                book += 1;
+            }
+        }
+    }
+    mesh.block(m.wood, Vec3::new(-X + 0.035, height * 0.5, 0.0), Vec3::new(0.02, height - 0.02, width));
+}
+
+/// A whiteboard on x = X, a screen beside it, the door on z = Z.
+fn board_and_door(mesh: &mut Mesh, m: &Materials, detail: f32) {
+    mesh.block(m.white, Vec3::new(X - 0.015, 1.55, -1.2), Vec3::new(0.03, 1.3, 2.4));
+    for (y, h) in [(0.90, 0.04), (2.20, 0.04)] {
+        mesh.block(m.metal, Vec3::new(X - 0.02, y, -1.2), Vec3::new(0.06, h, 2.48));
+    }
+    for z in [-2.42, 0.02] {
+        mesh.block(m.metal, Vec3::new(X - 0.02, 1.55, z), Vec3::new(0.055, 1.26, 0.04));
+    }
+    mesh.block(m.metal, Vec3::new(X - 0.07, 0.88, -1.2), Vec3::new(0.12, 0.012, 1.2));
+    for i in 0..4 {
+        let z = -1.5 + i as f32 * 0.16;
+        let pen = [Vec3::new(X - 0.09, 0.895, z), Vec3::new(X - 0.09, 0.895, z + 0.12)];
+        mesh.bar(m.books[i % 4], pen[0], pen[1], 0.009, segments(10.0, detail, 5));
+    }
+    mesh.block(m.metal, Vec3::new(X - 0.04, 1.6, 2.0), Vec3::new(0.07, 1.0, 1.7));
+    mesh.block(m.screen, Vec3::new(X - 0.078, 1.6, 2.0), Vec3::new(0.01, 0.94, 1.64));
+
+    mesh.block(m.wood, Vec3::new(-4.2, 1.03, Z - 0.01), Vec3::new(0.95, 2.05, 0.06));
+    for x in [-4.72, -3.68] {
+        mesh.block(m.white, Vec3::new(x, 1.06, Z - 0.02), Vec3::new(0.09, 2.12, 0.10));
+    }
+    mesh.block(m.white, Vec3::new(-4.2, 2.11, Z - 0.02), Vec3::new(1.13, 0.10, 0.104));
+    let handle = [
+        Vec3::new(-3.86, 1.05, Z - 0.03),
+        Vec3::new(-3.86, 1.05, Z - 0.09),
+        Vec3::new(-3.90, 1.05, Z - 0.10),
+        Vec3::new(-4.00, 1.05, Z - 0.10),
+    ];
+    mesh.tube(m.metal, &curve(&handle, segments(16.0, detail, 6)), |_| 0.011, segments(10.0, detail, 5));
+}

@@ -1,0 +1,120 @@
+//! `scan`: one closed surface of evenly sized triangles, as from a 3D scanner (the bunny's and the dragon's character):
+//! a cat that sits on a plinth, meshed by surface nets.
+
+use super::mesh::Mesh;
+use super::noise::fractal;
+use super::surface_nets::surface_net;
+use super::{Parameter, SceneInfo, Values, assemble};
+use crate::math::Vertex;
+use crate::scene::{Light, Material, Scene, Triangle, normals};
+use glam::Vec3;
+
+pub(super) const INFO: SceneInfo = SceneInfo {
+    name: "scan",
+    character: "uniform: one scanned-like statue of evenly sized triangles, one light",
+    parameters: &[Parameter::triangles(70_000, 1_000)],
+    build,
+};
+
+/// The cube that holds the statue.
+const MIN: Vec3 = Vec3::new(-1.15, -0.1, -1.15);
+const SIZE: f32 = 2.3;
+
+fn build(values: &Values) -> Scene {
+    let target = values.triangles();
+    // The number of triangles goes with the inverse square of the cell: a coarse net tells the factor, and a second look
+    // corrects what the fine relief adds.
+    let mut cell = SIZE / 40.0;
+    let mut net = surface_net(MIN, SIZE, cell, statue);
+    for _ in 0..4 {
+        let ratio = net.triangles.len() as f32 / target as f32;
+        if (0.98..1.02).contains(&ratio) {
+            break;
+        }
+        cell *= ratio.sqrt();
+        net = surface_net(MIN, SIZE, cell, statue);
+    }
+    let mut mesh = Mesh::plain();
+    let stone = mesh.material(Material::matt(Vec3::new(0.78, 0.68, 0.56)).shiny(Vec3::splat(0.25), 30.0, 0.0));
+    mesh.vertices = net.positions.iter().map(|&p| Vertex::new(p, Vec3::ZERO)).collect();
+    mesh.triangles = net.triangles.iter().map(|&vertices| Triangle { vertices, material: stone }).collect();
+    normals::smooth(&mut mesh.vertices, &mesh.triangles);
+    let light = Light::new(Vec3::new(2.5, 5.0, 4.0), Vec3::splat(1.0));
+    assemble(mesh, vec![light], Vec3::new(0.10, 0.11, 0.13), None)
+}
+
+/// Negative inside; near the surface about the distance.
+fn statue(p: Vec3) -> f32 {
+    let plinth = rounded_cylinder(p, 0.74, 0.2, 0.03);
+    // Both sides are alike.
+    let m = Vec3::new(p.x.abs(), p.y, p.z);
+
+    let mut cat = cone(p, Vec3::new(0.0, 0.58, -0.20), Vec3::new(0.0, 1.02, 0.10), 0.40, 0.29);
+    cat = blend(cat, ellipsoid(m, Vec3::new(0.27, 0.45, -0.10), Vec3::new(0.20, 0.28, 0.36)), 0.10);
+    cat = blend(cat, ellipsoid(p, Vec3::new(0.0, 0.92, 0.20), Vec3::new(0.24, 0.30, 0.20)), 0.10);
+    cat = blend(cat, cone(m, Vec3::new(0.15, 0.90, 0.26), Vec3::new(0.13, 0.28, 0.38), 0.12, 0.085), 0.06);
+    cat = blend(cat, ellipsoid(m, Vec3::new(0.13, 0.25, 0.45), Vec3::new(0.105, 0.075, 0.15)), 0.05);
+    cat = blend(cat, ellipsoid(m, Vec3::new(0.34, 0.25, 0.20), Vec3::new(0.11, 0.075, 0.20)), 0.05);
+    cat = blend(cat, cone(p, Vec3::new(0.0, 1.10, 0.14), Vec3::new(0.0, 1.42, 0.24), 0.22, 0.19), 0.10);
+    cat = blend(cat, ellipsoid(p, Vec3::new(0.0, 1.54, 0.28), Vec3::new(0.27, 0.235, 0.25)), 0.07);
+    cat = blend(cat, ellipsoid(m, Vec3::new(0.06, 1.47, 0.50), Vec3::new(0.085, 0.065, 0.075)), 0.04);
+    cat = blend(cat, ellipsoid(p, Vec3::new(0.0, 1.41, 0.47), Vec3::new(0.07, 0.06, 0.07)), 0.03);
+    cat = blend(cat, ellipsoid(p, Vec3::new(0.0, 1.515, 0.56), Vec3::new(0.03, 0.022, 0.025)), 0.01);
+    cat = blend(cat, cone(m, Vec3::new(0.145, 1.68, 0.25), Vec3::new(0.205, 1.93, 0.23), 0.095, 0.02), 0.04);
+    // The hollow of an ear, and the eyes' sockets with the eyes.
+    cat = carve(cat, cone(m, Vec3::new(0.155, 1.70, 0.345), Vec3::new(0.205, 1.87, 0.275), 0.055, 0.02), 0.02);
+    cat = carve(cat, ellipsoid(m, Vec3::new(0.105, 1.58, 0.51), Vec3::new(0.055, 0.04, 0.05)), 0.02);
+    cat = blend(cat, ellipsoid(m, Vec3::new(0.10, 1.58, 0.475), Vec3::new(0.045, 0.038, 0.04)), 0.005);
+    let tail = [
+        (Vec3::new(0.0, 0.34, -0.50), 0.10),
+        (Vec3::new(0.30, 0.29, -0.52), 0.095),
+        (Vec3::new(0.54, 0.28, -0.28), 0.085),
+        (Vec3::new(0.60, 0.28, 0.06), 0.08),
+        (Vec3::new(0.46, 0.28, 0.40), 0.07),
+    ];
+    for pair in tail.windows(2) {
+        cat = blend(cat, cone(p, pair[0].0, pair[1].0, pair[0].1, pair[1].1), 0.05);
+    }
+
+    let whole = blend(cat, plinth, 0.015);
+    // The relief is seen only near the surface; elsewhere the distance is all that matters.
+    if whole.abs() > 0.06 {
+        return whole;
+    }
+    let fur = fractal(Vec3::new(p.x * 16.0, p.y * 7.0, p.z * 16.0), 4, 11) * 0.016;
+    let grain = fractal(p * 34.0, 2, 23) * 0.004;
+    whole + if cat < plinth { fur + grain } else { grain }
+}
+
+/// Polynomial smooth union with radius `k`.
+fn blend(a: f32, b: f32, k: f32) -> f32 {
+    let h = (k - (a - b).abs()).max(0.0) / k;
+    a.min(b) - h * h * k * 0.25
+}
+
+/// `b` taken away from `a`, smoothly.
+fn carve(a: f32, b: f32, k: f32) -> f32 {
+    -blend(-a, b, k)
+}
+
+/// About the distance to an ellipsoid (exact on the surface).
+fn ellipsoid(p: Vec3, center: Vec3, radii: Vec3) -> f32 {
+    let q = (p - center) / radii;
+    let k0 = q.length();
+    let k1 = (q / radii).length();
+    if k1 > 0.0 { k0 * (k0 - 1.0) / k1 } else { -radii.min_element() }
+}
+
+/// A capsule whose radius changes from `ra` to `rb`.
+fn cone(p: Vec3, a: Vec3, b: Vec3, ra: f32, rb: f32) -> f32 {
+    let ab = b - a;
+    let t = ((p - a).dot(ab) / ab.length_squared()).clamp(0.0, 1.0);
+    p.distance(a + ab * t) - (ra + (rb - ra) * t)
+}
+
+/// A cylinder around y from 0 to `height`, its edges rounded.
+fn rounded_cylinder(p: Vec3, radius: f32, height: f32, rounding: f32) -> f32 {
+    let d = glam::Vec2::new((p.x * p.x + p.z * p.z).sqrt() - radius, (p.y - height * 0.5).abs() - height * 0.5)
+        + glam::Vec2::splat(rounding);
+    d.max_element().min(0.0) + d.max(glam::Vec2::ZERO).length() - rounding
+}
