@@ -69,36 +69,22 @@ fn main() {
     println!("build {:?} nodes {} depth {}", t.elapsed(), bvh.nodes.len(), bvh.depth);
     let st = Structure::Bvh(bvh);
     let cpu = CpuBackend::new(0).unwrap();
-    let gpu = GpuBackend::open(&Selector::Best, GpuOptions::default()).unwrap();
-    let size = Size { width: 200, height: 136 };
-    for tr in [Traversal::BvhStack] {
-        let mut c = cpu.prepare(&s, &st, tr).unwrap();
-        let mut g = gpu.prepare(&s, &st, tr).unwrap();
-        for config in [Config::P, Config::PS] {
-            let mut a = Vec::new();
-            c.counted(config, &view, size, &mut |_, p| a.extend_from_slice(p)).unwrap();
-            let mut d = Vec::new();
-            g.counted(config, &view, size, &mut |_, p| d.extend_from_slice(p)).unwrap();
-            let hits = a.iter().zip(&d).filter(|(x, y)| x.pixel.triangle != y.pixel.triangle || x.t != y.t).count();
-            let counters = a.iter().zip(&d).filter(|(x, y)| x.counters != y.counters).count();
-            let colours = a.iter().zip(&d).filter(|(x, y)| x.pixel.rgba != y.pixel.rgba).count();
-            let im = g.image(config, &view, size).unwrap();
-            let same = im.iter().zip(&d).filter(|(x, y)| **x != y.pixel).count();
-            let im = c.image(config, &view, size).unwrap();
-            let same2 = im.iter().zip(&a).filter(|(x, y)| **x != y.pixel).count();
-            let mut sum = [[0u64; 6]; 3];
-            for p in &a {
-                for k in 0..3 {
-                    let c = p.counters[k];
-                    for (i, v) in [c.rays, c.inner, c.leaves, c.tests, c.pops, c.restarts].into_iter().enumerate() {
-                        sum[k][i] += v as u64
-                    }
-                }
-            }
-            println!(
-                "{tr:?} {config:?}: hits {hits} counters {counters} colours {colours} timed!=counted gpu {same} cpu {same2} sums {sum:?}"
-            );
-        }
+    let dirs: Vec<String> = std::env::args().skip(2).collect();
+    let gpus: Vec<GpuBackend> =
+        dirs.iter().map(|_| GpuBackend::open(&Selector::Best, GpuOptions::default()).unwrap()).collect();
+    let mut gs: Vec<_> = gpus.iter().map(|g| g.prepare(&s, &st, Traversal::BvhStack).unwrap()).collect();
+    let n = 1024;
+    let size = Size { width: n, height: n };
+    let views = vec![view.clone(); 1];
+    let mut reference = None;
+    for (d, g) in dirs.iter().zip(&mut gs) {
+        #[allow(unsafe_code)]
+        unsafe {
+            std::env::set_var("KDIR", d)
+        };
+        let im = g.image(Config::P, &view, size).unwrap();
+        let r = reference.get_or_insert_with(|| im.clone());
+        println!("{d}: {} pixels differ", im.iter().zip(r.iter()).filter(|(a, b)| a != b).count());
     }
     // obvhs
     let tris: Vec<obvhs::triangle::Triangle> = (0..s.triangles.len() as u32)
@@ -117,20 +103,10 @@ fn main() {
     use rayon::prelude::*;
     let n = 1024u32;
     let grid = view.camera.pixel_grid(n, n);
-    let size = Size { width: n, height: n };
-    let views = vec![view.clone(); 1];
     let mut c = cpu.prepare(&s, &st, Traversal::BvhStack).unwrap();
-    let mut g = gpu.prepare(&s, &st, Traversal::BvhStack).unwrap();
-    let cpu_now = || {
-        let s = std::fs::read_to_string("/proc/self/stat").unwrap();
-        let f: Vec<&str> = s.rsplit(')').next().unwrap().split_whitespace().collect();
-        f[11].parse::<f64>().unwrap() * 10.0 + f[12].parse::<f64>().unwrap() * 10.0
-    };
-    let mut cpus = [0.0f64; 3];
-    let mut times = [vec![], vec![], vec![]];
-    for _ in 0..7 {
+    let mut times = vec![vec![]; dirs.len() + 2];
+    for _ in 0..15 {
         let t = Instant::now();
-        let c0 = cpu_now();
         let _hits: usize = (0..n * n / 64)
             .into_par_iter()
             .map(|g| {
@@ -149,18 +125,17 @@ fn main() {
             })
             .sum();
         times[0].push(t.elapsed().as_secs_f64() * 1e3);
-        let c1 = cpu_now();
-        cpus[0] += c1 - c0;
         times[1].push(c.time_path(Config::P, &views, size, &|| false).unwrap()[0].wall_ns as f64 * 1e-6);
-        let c2 = cpu_now();
-        cpus[1] += c2 - c1;
-        times[2].push(g.time_path(Config::P, &views, size, &|| false).unwrap()[0].device_ns.unwrap() as f64 * 1e-6);
-        cpus[2] += cpu_now() - c2;
+        for (i, g) in gs.iter_mut().enumerate() {
+            times[2 + i]
+                .push(g.time_path(Config::P, &views, size, &|| false).unwrap()[0].device_ns.unwrap() as f64 * 1e-6);
+        }
     }
-    println!("cpu time {cpus:?} ratio cpu/obvhs {:.3} gpu/obvhs {:.3}", cpus[0] / cpus[1], cpus[0] / cpus[2]);
-    for (name, t) in ["obvhs", "cpu", "gpu"].iter().zip(&mut times) {
+    for t in &mut times {
         t.sort_by(f64::total_cmp);
-        println!("{name}: median {:.1} ms min {:.1} -> {:.2} Mrays/s", t[3], t[0], (n * n) as f64 / t[3] * 1e-3);
     }
-    println!("ratio cpu/obvhs {:.3} gpu/obvhs {:.3}", times[0][3] / times[1][3], times[0][3] / times[2][3]);
+    let (m0, med0) = (times[0][0], times[0][7]);
+    for (name, t) in ["obvhs", "cpu"].into_iter().map(String::from).chain(dirs.iter().cloned()).zip(&times) {
+        println!("{name:12}: min {:.1} ms ratio {:.3}; median {:.1} ratio {:.3}", t[0], m0 / t[0], t[7], med0 / t[7]);
+    }
 }

@@ -5,13 +5,14 @@
 
 use super::bvh::{Bvh, BvhNode, MAX_DEPTH, MAX_LEAF};
 use super::prims;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::math::Aabb;
 use crate::scene::Scene;
 use glam::Vec3;
 use obvhs::BvhBuildParams;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2_from_tris;
+use obvhs::bvh2::node::Bvh2Node;
 use obvhs::triangle::Triangle;
 use rayon::prelude::*;
 
@@ -21,6 +22,10 @@ pub const PRESETS: [&str; 6] = ["fastest", "very-fast", "fast", "medium", "slow"
 /// How far a box of a split triangle is moved outwards, in units of the scene's largest extent or coordinate. obvhs
 /// clips exactly to the split plane, and a hit there, computed in f32, may lie just outside of both halves.
 const SPLIT_MARGIN: f32 = 1.0 / (1 << 18) as f32;
+
+/// From this depth on, a subtree that would be too deep is balanced instead: half of [`MAX_DEPTH`] is enough for any
+/// number of leaves that there can be.
+const REBALANCE: u32 = MAX_DEPTH / 2;
 
 /// The parameters of a preset; `None` if there is no such preset.
 pub fn preset(name: &str) -> Option<BvhBuildParams> {
@@ -62,8 +67,10 @@ pub fn build(scene: &Scene, params: BvhBuildParams) -> Result<Bvh> {
         nodes: vec![BvhNode::NONE; 2],
         records: Vec::with_capacity(tree.primitive_indices.len()),
         depth: 0,
+        heights: Vec::new(),
     };
-    copy.nodes[0] = copy.node(0, 0)?;
+    copy.heights = copy.heights();
+    copy.nodes[0] = copy.node(0, 0);
     Ok(Bvh { bounds, nodes: copy.nodes, records: copy.records, depth: copy.depth })
 }
 
@@ -89,34 +96,81 @@ struct Copy<'a> {
     nodes: Vec<BvhNode>,
     records: Vec<super::Record>,
     depth: u32,
+    heights: Vec<u32>,
 }
 
 impl Copy<'_> {
-    /// Copies the subtree below `from`, depth first; returns its root, with boxes fitted to the triangles themselves.
-    fn node(&mut self, from: usize, depth: u32) -> Result<BvhNode> {
-        let node = self.tree.nodes[from];
-        if node.is_leaf() {
-            self.depth = self.depth.max(depth);
-            return Ok(self.leaf(&node));
+    /// Levels of inner nodes below every node of obvhs's tree. Without recursion: there is no bound on its depth, and
+    /// over thousands of triangles in one place reinsertion makes it a chain.
+    fn heights(&self) -> Vec<u32> {
+        let mut parents_first = vec![0_usize];
+        let mut next = 0;
+        while let Some(node) = parents_first.get(next).map(|&i| &self.tree.nodes[i]) {
+            if !node.is_leaf() {
+                parents_first.extend([node.first_index as usize, node.first_index as usize + 1]);
+            }
+            next += 1;
         }
-        if depth == MAX_DEPTH {
-            return Err(Error::argument(
-                "ploc",
-                format!("obvhs built a tree of more than {MAX_DEPTH} levels over {}", self.scene.name),
-                "try another preset",
-            ));
+        let mut heights = vec![0; self.tree.nodes.len()];
+        for &i in parents_first.iter().rev() {
+            let node = &self.tree.nodes[i];
+            if !node.is_leaf() {
+                let first = node.first_index as usize;
+                heights[i] = 1 + heights[first].max(heights[first + 1]);
+            }
         }
-        let pair = self.nodes.len();
-        self.nodes.extend([BvhNode::NONE; 2]);
-        let left = self.node(node.first_index as usize, depth + 1)?;
-        let right = self.node(node.first_index as usize + 1, depth + 1)?;
-        self.nodes[pair] = left;
-        self.nodes[pair + 1] = right;
-        let bounds = left.aabb().union(right.aabb());
-        Ok(BvhNode { min: bounds.min.into(), first: pair as u32, max: bounds.max.into(), count: 0 })
+        heights
     }
 
-    fn leaf(&mut self, node: &obvhs::bvh2::node::Bvh2Node) -> BvhNode {
+    /// Copies the subtree below `from`, depth first; returns its root, with boxes fitted to the triangles themselves.
+    fn node(&mut self, from: usize, depth: u32) -> BvhNode {
+        let node = self.tree.nodes[from];
+        if node.is_leaf() {
+            return self.leaf(&node, depth);
+        }
+        if depth >= REBALANCE && depth + self.heights[from] > MAX_DEPTH {
+            let leaves = self.leaves(from);
+            return self.balanced(&leaves, depth);
+        }
+        let first = node.first_index as usize;
+        self.pair(|copy| [copy.node(first, depth + 1), copy.node(first + 1, depth + 1)])
+    }
+
+    /// An inner node over the two children that `children` makes.
+    fn pair(&mut self, children: impl FnOnce(&mut Self) -> [BvhNode; 2]) -> BvhNode {
+        let pair = self.nodes.len();
+        self.nodes.extend([BvhNode::NONE; 2]);
+        let children = children(self);
+        self.nodes[pair..pair + 2].copy_from_slice(&children);
+        let bounds = children[0].aabb().union(children[1].aabb());
+        BvhNode { min: bounds.min.into(), first: pair as u32, max: bounds.max.into(), count: 0 }
+    }
+
+    /// The leaves below a node, from left to right.
+    fn leaves(&self, from: usize) -> Vec<usize> {
+        let (mut leaves, mut waiting) = (Vec::new(), vec![from]);
+        while let Some(i) = waiting.pop() {
+            let node = &self.tree.nodes[i];
+            if node.is_leaf() {
+                leaves.push(i);
+            } else {
+                waiting.extend([node.first_index as usize + 1, node.first_index as usize]);
+            }
+        }
+        leaves
+    }
+
+    /// A balanced tree over some of obvhs's leaves, in their order.
+    fn balanced(&mut self, leaves: &[usize], depth: u32) -> BvhNode {
+        if let [leaf] = *leaves {
+            return self.leaf(&self.tree.nodes[leaf], depth);
+        }
+        let (left, right) = leaves.split_at(leaves.len() / 2);
+        self.pair(|copy| [copy.balanced(left, depth + 1), copy.balanced(right, depth + 1)])
+    }
+
+    fn leaf(&mut self, node: &Bvh2Node, depth: u32) -> BvhNode {
+        self.depth = self.depth.max(depth);
         let range = node.first_index as usize..(node.first_index + node.prim_count) as usize;
         let mut triangles: Vec<u32> =
             self.tree.primitive_indices[range].iter().map(|&i| self.triangles[i as usize]).collect();

@@ -1,1 +1,132 @@
-//! accel
+//! Builders: every one, with several options, over every degenerate scene, validated; validation itself; determinism;
+//! the published numbers.
+
+mod broken;
+mod registry;
+mod scenes;
+mod thesis;
+
+use glam::Vec3;
+use proptest::prelude::*;
+use rtbench::accel::{Selection, Structure};
+use rtbench::scene::Scene;
+
+/// Every builder, with options that lead through other code.
+pub const SELECTIONS: [&str; 18] = [
+    "grid",
+    "grid:factor=1",
+    "grid:x=5",
+    "grid:x=3,y=4,z=2",
+    "kdtree",
+    "kdtree:exact_below=0",
+    "kdtree:exact_below=16,bins=7",
+    "kdtree:kt=0.2,max_depth=20",
+    "kdtree:max_depth=0",
+    "bvh",
+    "bvh:bins=2,max_leaf=1",
+    "bvh:bins=32,max_leaf=15",
+    "ploc-stack",
+    "ploc-stack:preset=fastest",
+    "ploc-stack:preset=very-fast",
+    "ploc-stack:preset=slow",
+    "ploc-stack:preset=very-slow",
+    "brute",
+];
+
+pub fn build(selection: &str, scene: &Scene, threads: usize) -> Structure {
+    Selection::parse(selection).unwrap().build(scene, threads).unwrap().structure
+}
+
+fn assert_valid(selection: &str, scene: &Scene) {
+    if let Err(why) = build(selection, scene, 2).validate(scene) {
+        panic!("{selection} over {}: {why}", scene.name);
+    }
+}
+
+#[test]
+fn every_builder_survives_every_degenerate_scene() {
+    for scene in scenes::degenerate() {
+        for selection in SELECTIONS {
+            assert_valid(selection, &scene);
+        }
+    }
+}
+
+#[test]
+fn every_builder_is_valid_on_ordinary_scenes() {
+    for scene in scenes::ordinary() {
+        for selection in SELECTIONS {
+            assert_valid(selection, &scene);
+        }
+    }
+}
+
+#[test]
+fn no_bvh_is_deeper_than_the_bound() {
+    // Every next triangle is ten times farther away: greedy splits take one triangle off at a time.
+    let corners = |i: i32| Vec3::splat(10_f32.powi(i / 8) * (1.0 + 0.1 * (i % 8) as f32));
+    let far = scenes::soup("powers of ten", (-240..240).map(|i| [corners(i), corners(i), corners(i)]));
+    let Structure::Bvh(bvh) = build("bvh:max_leaf=1,bins=2", &far, 1) else { unreachable!() };
+    assert!(bvh.depth > 20, "the scene is no challenge: depth {}", bvh.depth);
+    assert!(bvh.depth <= rtbench::accel::bvh::MAX_DEPTH);
+}
+
+#[test]
+fn builds_do_not_depend_on_the_number_of_threads() {
+    let scene = scenes::random("random", 30_000, 1.0, 0.02, 7);
+    for selection in SELECTIONS {
+        let one = bytes(&build(selection, &scene, 1));
+        for threads in [2, 4] {
+            assert!(one == bytes(&build(selection, &scene, threads)), "{selection} differs with {threads} threads");
+        }
+    }
+}
+
+/// Everything that a device would be given.
+fn bytes(structure: &Structure) -> Vec<u8> {
+    let nodes: &[u8] = match structure {
+        Structure::Brute(_) => &[],
+        Structure::Grid(s) => bytemuck::cast_slice(&s.cells),
+        Structure::KdTree(s) => bytemuck::cast_slice(&s.nodes),
+        Structure::Bvh(s) => bytemuck::cast_slice(&s.nodes),
+    };
+    [nodes, bytemuck::cast_slice(structure.records())].concat()
+}
+
+#[test]
+fn sah_cost_is_near_that_of_a_good_builder() {
+    let scene = scenes::random("random", 20_000, 1.0, 0.02, 3);
+    let cost = |selection| build(selection, &scene, 0).properties(&scene).sah_cost.unwrap();
+    let (own, obvhs) = (cost("bvh"), cost("ploc-stack:preset=fast"));
+    assert!(own < 1.25 * obvhs, "SAH cost {own}, obvhs has {obvhs}");
+}
+
+/// Corners on a coarse lattice, so that boxes touch, coincide and lie in planes all the time.
+fn lattice_soup() -> impl Strategy<Value = Vec<[Vec3; 3]>> {
+    let corner = (0..6_i32, 0..6_i32, 0..6_i32).prop_map(|(x, y, z)| Vec3::new(x as f32, y as f32, z as f32));
+    prop::collection::vec([corner.clone(), corner.clone(), corner], 0..120)
+}
+
+/// Corners anywhere, infinities and NaN included.
+fn wild_soup() -> impl Strategy<Value = Vec<[Vec3; 3]>> {
+    let corner = [any::<f32>(), any::<f32>(), any::<f32>()].prop_map(Vec3::from);
+    prop::collection::vec([corner.clone(), corner.clone(), corner], 0..40)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 40, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_lattice_soup_is_valid(triangles in lattice_soup()) {
+        let scene = scenes::soup("lattice", triangles);
+        SELECTIONS.iter().for_each(|selection| assert_valid(selection, &scene));
+    }
+
+    #[test]
+    fn any_wild_soup_is_valid(triangles in wild_soup()) {
+        let scene = scenes::soup("wild", triangles);
+        // A resolution set by hand may well be refused here.
+        let selections = SELECTIONS.iter().filter(|s| !s.starts_with("grid:x"));
+        selections.for_each(|selection| assert_valid(selection, &scene));
+    }
+}

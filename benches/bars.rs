@@ -1,0 +1,117 @@
+//! The bars of the builders, as ratios of interleaved rounds in one run: `cargo bench --bench bars`.
+//!
+//! Every round builds each contestant once, in an order that turns round every other time (ABBA), so that a machine
+//! that is busy or changes its clock disturbs all of them alike. A ratio is the median of the rounds' ratios, with
+//! the interval that an exact sign test gives at about 95 %.
+
+mod common;
+
+use common::Input;
+use rtbench::accel::Selection;
+use rtbench::scene::Scene;
+use std::hint::black_box;
+use std::time::Instant;
+
+/// Milliseconds of one build.
+type Contestant<'a> = (&'static str, Box<dyn Fn() -> f64 + 'a>);
+
+fn own<'a>(name: &'static str, structure: &str, threads: usize, scene: &'a Scene) -> Contestant<'a> {
+    let selection = Selection::parse(structure).expect("a name of the table");
+    (name, Box::new(move || selection.build(scene, threads).expect("builds").build_ms))
+}
+
+fn timed<'a, T>(name: &'static str, build: impl Fn() -> T + 'a) -> Contestant<'a> {
+    let run = move || {
+        let start = Instant::now();
+        black_box(build());
+        start.elapsed().as_secs_f64() * 1e3
+    };
+    (name, Box::new(run))
+}
+
+fn main() {
+    if !common::measuring() {
+        println!("only a test that this runs: use cargo bench --bench bars");
+        bars("scan", &common::scan(1000), 3);
+        return;
+    }
+    let mut scenes = common::models();
+    if scenes.is_empty() {
+        scenes = vec![("scan", common::scan(70_000))];
+    }
+    for (name, scene) in &scenes {
+        let rounds = if scene.triangles.len() > 500_000 { 11 } else { 41 };
+        bars(name, scene, rounds);
+    }
+}
+
+fn bars(name: &str, scene: &Scene, rounds: usize) {
+    let input = Input::new(scene);
+    let one = common::pool(1);
+    let contestants: Vec<Contestant> = vec![
+        own("bvh, 1 thread", "bvh", 1, scene),
+        own("bvh, 2 threads", "bvh", 2, scene),
+        own("kdtree, 1 thread", "kdtree", 1, scene),
+        own("kdtree, 2 threads", "kdtree", 2, scene),
+        own("grid, 1 thread", "grid", 1, scene),
+        timed("parry3d binned, 1 thread", || common::parry(&input)),
+        timed("obvhs medium, 1 thread", || {
+            one.install(|| common::obvhs(&input, obvhs::BvhBuildParams::medium_build()))
+        }),
+    ];
+    let mut times = vec![Vec::new(); contestants.len()];
+    for round in 0..rounds {
+        let mut order: Vec<usize> = (0..contestants.len()).collect();
+        if round % 2 == 1 {
+            order.reverse();
+        }
+        for i in order {
+            times[i].push((contestants[i].1)());
+        }
+    }
+
+    println!("{name}: {} triangles, {rounds} interleaved rounds", scene.triangles.len());
+    for ((label, _), times) in contestants.iter().zip(&times) {
+        println!("  {label:28} median {:8.2} ms, fastest {:8.2} ms", median(times), sorted(times)[0]);
+    }
+    let of = |label: &str| &times[contestants.iter().position(|c| c.0 == label).expect("a contestant")];
+    for (a, b, bar) in [
+        ("bvh, 1 thread", "parry3d binned, 1 thread", "at most 1"),
+        ("bvh, 1 thread", "bvh, 2 threads", "at least 1.6"),
+        ("kdtree, 1 thread", "bvh, 1 thread", "at most 5"),
+        ("kdtree, 2 threads", "bvh, 2 threads", "at most 5"),
+        ("grid, 1 thread", "bvh, 1 thread", "less than 1"),
+        ("bvh, 1 thread", "obvhs medium, 1 thread", "none"),
+    ] {
+        let ratios: Vec<f64> = of(a).iter().zip(of(b)).map(|(a, b)| a / b).collect();
+        let (low, high) = sign_test_interval(&ratios);
+        println!("  {a} / {b}: {:.3} ({low:.3} to {high:.3}), bar: {bar}", median(&ratios));
+    }
+}
+
+fn sorted(values: &[f64]) -> Vec<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted
+}
+
+fn median(values: &[f64]) -> f64 {
+    let sorted = sorted(values);
+    let n = sorted.len();
+    (sorted[(n - 1) / 2] + sorted[n / 2]) / 2.0
+}
+
+/// The values between which the median lies with a probability of at least 95 % (all of them, if there are too few).
+fn sign_test_interval(values: &[f64]) -> (f64, f64) {
+    let sorted = sorted(values);
+    let n = sorted.len();
+    // P(at most k of n are below the median), k growing, until a tail would exceed 2.5 %.
+    let (mut k, mut tail, mut term) = (0, 0.0, 0.5_f64.powi(n as i32));
+    while tail + term <= 0.025 {
+        tail += term;
+        k += 1;
+        term *= (n - k + 1) as f64 / k as f64;
+    }
+    let k = k.saturating_sub(1);
+    (sorted[k], sorted[n - 1 - k])
+}

@@ -1,0 +1,196 @@
+//! Validation notices every kind of damage: each check of it is fed something wrong here.
+
+use super::{build, scenes};
+use rtbench::accel::bvh::{Bvh, BvhNode};
+use rtbench::accel::grid::Grid;
+use rtbench::accel::kdtree::{KdNode, KdTree};
+use rtbench::accel::{Brute, Structure};
+use rtbench::scene::Scene;
+
+fn scene() -> Scene {
+    scenes::random("good", 400, 1.0, 0.1, 9)
+}
+
+/// Breaks a good structure and checks that validation says so, in these words.
+fn assert_noticed<T: Clone>(good: &T, wrap: fn(T) -> Structure, damages: &[(&str, &str, &dyn Fn(&mut T))]) {
+    let scene = scene();
+    wrap(good.clone()).validate(&scene).expect("good before it is broken");
+    for (damage, words, break_it) in damages {
+        let mut broken = good.clone();
+        break_it(&mut broken);
+        match wrap(broken).validate(&scene) {
+            Ok(()) => panic!("{damage} was not noticed"),
+            Err(why) => assert!(why.contains(words), "{damage}: '{why}' does not say '{words}'"),
+        }
+    }
+}
+
+fn leaf_of(bvh: &Bvh) -> usize {
+    bvh.nodes.iter().position(|n| n.count > 1).unwrap()
+}
+
+fn inner_of(bvh: &Bvh) -> usize {
+    // Not the root: its box is compared with the bounds.
+    bvh.nodes[2..].iter().position(|n| n.count == 0).unwrap() + 2
+}
+
+#[test]
+fn in_a_bvh() {
+    let Structure::Bvh(good) = build("bvh", &scene(), 1) else { unreachable!() };
+    let (leaf, inner) = (leaf_of(&good), inner_of(&good));
+    let other = good.nodes.iter().rposition(|n| n.count > 1).unwrap();
+    let damages: &[(&str, &str, &dyn Fn(&mut Bvh))] = &[
+        ("shrunk leaf", "span", &|b| b.nodes[leaf].max[0] -= 1e-3),
+        ("grown leaf", "its content", &|b| b.nodes[leaf].max[0] += 1e-3),
+        ("shrunk inner box", "its content", &|b| b.nodes[inner].min[1] += 1e-3),
+        ("grown inner box", "its content", &|b| b.nodes[inner].min[1] -= 1e-3),
+        ("NaN in a box", "its content", &|b| b.nodes[inner].min[1] = f32::NAN),
+        ("NaN in a leaf", "", &|b| b.nodes[leaf].min[2] = f32::NAN),
+        ("leaf elsewhere", "outside its leaf", &|b| {
+            b.nodes[leaf].min = [5.0; 3];
+            b.nodes[leaf].max = [6.0; 3];
+        }),
+        ("wrong bounds", "bounds", &|b| b.bounds.max.x += 1.0),
+        ("dropped last record", "behind the last record", &|b| {
+            b.records.pop();
+        }),
+        ("one record too many", "in leaves", &|b| b.records.push(b.records[0])),
+        ("lost triangle", "", &|b| b.records[1] = b.records[0]),
+        ("swapped records", "outside its leaf", &|b| {
+            let (i, j) = (b.nodes[leaf].first as usize, b.nodes[other].first as usize);
+            b.records.swap(i, j);
+        }),
+        ("wrong vertices", "has vertices", &|b| b.records[3].vertices.swap(0, 1)),
+        ("triangle out of range", "does not exist", &|b| b.records[3].triangle = 1 << 30),
+        ("odd link", "the children of node", &|b| b.nodes[inner].first += 1),
+        ("link out of range", "behind the last node", &|b| b.nodes[inner].first = b.nodes.len() as u32),
+        ("link to the root", "begin at 0", &|b| b.nodes[inner].first = 0),
+        ("link to itself", "reached twice", &|b| b.nodes[inner].first = inner as u32 & !1),
+        ("link to a cousin", "", &|b| b.nodes[inner].first = b.nodes[0].first),
+        ("leaf reaches too far", "", &|b| b.nodes[leaf].count += 1),
+        ("leaf too full", "more than", &|b| b.nodes[leaf].count = 16),
+        ("leaf begins too late", "not at", &|b| b.nodes[leaf].first += 1),
+        ("wrong depth", "depth is", &|b| b.depth += 1),
+        ("unreachable pair", "cannot be reached", &|b| b.nodes.extend([BvhNode::NONE; 2])),
+        ("odd number of nodes", "even number", &|b| b.nodes.push(BvhNode::NONE)),
+        ("no nodes", "even number", &|b| b.nodes.clear()),
+        ("no dummy sibling", "no dummy", &|b| b.nodes[1] = b.nodes[0]),
+    ];
+    assert_noticed(&good, Structure::Bvh, damages);
+}
+
+#[test]
+fn in_a_kdtree() {
+    let Structure::KdTree(good) = build("kdtree", &scene(), 1) else { unreachable!() };
+    let inner = 1 + good.nodes[1..].iter().position(|n| !n.is_leaf()).unwrap();
+    let leaf = good.nodes.iter().position(|n| n.is_leaf() && n.count() > 1).unwrap();
+    let first = good.nodes[leaf].first() as usize;
+    let moved = |n: KdNode, by: f32| KdNode::inner(n.axis() as u32, n.split() + by, n.right());
+    let damages: &[(&str, &str, &dyn Fn(&mut KdTree))] = &[
+        ("moved plane", "instead of", &|t| t.nodes[0] = moved(t.nodes[0], 0.05)),
+        ("plane outside its cell", "not inside its cell", &|t| t.nodes[inner] = moved(t.nodes[inner], 9.0)),
+        ("plane on the border", "not inside its cell", &|t| {
+            let n = t.nodes[0];
+            t.nodes[0] = KdNode::inner(n.axis() as u32, t.bounds.min[n.axis()], n.right());
+        }),
+        ("NaN plane", "not inside its cell", &|t| t.nodes[inner] = moved(t.nodes[inner], f32::NAN)),
+        ("other axis", "", &|t| {
+            let n = t.nodes[0];
+            t.nodes[0] = KdNode::inner((n.axis() as u32 + 1) % 3, n.split(), n.right());
+        }),
+        ("wrong link", "right child", &|t| t.nodes[inner].link += 4),
+        ("link backwards", "right child", &|t| {
+            let n = t.nodes[inner];
+            t.nodes[inner] = KdNode::inner(n.axis() as u32, n.split(), 0);
+        }),
+        ("tree cut off", "behind the last node", &|t| {
+            t.nodes.pop();
+        }),
+        ("node too many", "reached", &|t| t.nodes.push(KdNode::leaf(0, 0))),
+        ("inner node at the end", "behind the last node", &|t| {
+            *t.nodes.last_mut().unwrap() = KdNode::inner(0, 0.5, 1);
+        }),
+        ("lost record", "", &|t| {
+            t.records.remove(first);
+        }),
+        ("doubled record", "instead of", &|t| t.records[first] = t.records[first + 1]),
+        ("record of another triangle", "instead of", &|t| {
+            let stranger = *t.records.iter().find(|r| t.records[first..first + 2].iter().all(|o| o != *r)).unwrap();
+            t.records[first] = stranger;
+        }),
+        ("record too many", "in leaves", &|t| t.records.push(t.records[0])),
+        ("leaf begins too late", "not at", &|t| t.nodes[leaf].word += 1),
+        ("leaf too long", "", &|t| t.nodes[leaf].link += 4),
+        ("wrong vertices", "has vertices", &|t| t.records[3].vertices.swap(1, 2)),
+        ("triangle out of range", "does not exist", &|t| t.records[3].triangle = u32::MAX),
+        ("wrong depth", "depth is", &|t| t.depth -= 1),
+        ("wrong bounds", "bounds", &|t| t.bounds.min.y -= 1.0),
+    ];
+    assert_noticed(&good, Structure::KdTree, damages);
+}
+
+#[test]
+fn in_a_grid() {
+    let Structure::Grid(good) = build("grid", &scene(), 1) else { unreachable!() };
+    let full = good.cells.iter().position(|c| c.count > 1).unwrap();
+    let empty = good.cells.iter().position(|c| c.count == 0).unwrap();
+    let first = good.cells[full].first as usize;
+    let damages: &[(&str, &str, &dyn Fn(&mut Grid))] = &[
+        ("resolution", "cells instead of", &|g| g.resolution[0] += 1),
+        ("swapped resolution", "", &|g| {
+            let [x, y, z] = g.resolution;
+            g.resolution = [x * y, 1, z];
+        }),
+        ("no cells", "resolution", &|g| g.resolution[2] = 0),
+        ("larger cells", "", &|g| g.cell_size *= 1.5),
+        ("smaller cells", "inside the bounds", &|g| g.cell_size *= 0.9),
+        ("cells without size", "cells of size", &|g| g.cell_size = 0.0),
+        ("NaN cells", "cells of size", &|g| g.cell_size = f32::NAN),
+        ("cell begins too late", "begins at", &|g| g.cells[full].first += 1),
+        ("cell too long", "", &|g| g.cells[full].count += 1),
+        ("cell far too long", "behind the last", &|g| g.cells[full].count = u32::MAX),
+        ("record too many", "in cells", &|g| g.records.push(g.records[0])),
+        ("not ascending", "ascending", &|g| g.records.swap(first, first + 1)),
+        ("doubled record", "ascending", &|g| g.records[first] = g.records[first + 1]),
+        ("record in another cell", "", &|g| {
+            // Moves the border between two neighbouring cells: all in order, but one record is in the wrong cell.
+            let next = (full + 1..g.cells.len()).find(|&c| c != full).unwrap();
+            g.cells[full].count -= 1;
+            g.cells[next].first -= 1;
+            g.cells[next].count += 1;
+        }),
+        ("record in a cell that it does not overlap", "does not overlap", &|g| {
+            let stranger = g.records[if empty < full { first } else { 0 }];
+            g.records.insert(g.cells[empty].first as usize, stranger);
+            g.cells[empty].count += 1;
+            g.cells[empty + 1..].iter_mut().for_each(|c| c.first += 1);
+        }),
+        ("wrong vertices", "has vertices", &|g| g.records[3].vertices.swap(1, 2)),
+        ("wrong bounds", "bounds", &|g| g.bounds.max.z += 1.0),
+    ];
+    assert_noticed(&good, Structure::Grid, damages);
+}
+
+#[test]
+fn in_a_list() {
+    let Structure::Brute(good) = build("brute", &scene(), 1) else { unreachable!() };
+    let damages: &[(&str, &str, &dyn Fn(&mut Brute))] = &[
+        ("lost", "not all", &|b| {
+            b.records.pop();
+        }),
+        ("swapped", "not all", &|b| b.records.swap(4, 5)),
+        ("doubled", "not all", &|b| b.records.push(b.records[0])),
+        ("wrong bounds", "bounds", &|b| b.bounds.max.z = f32::NAN),
+    ];
+    assert_noticed(&good, Structure::Brute, damages);
+}
+
+#[test]
+fn triangles_that_cannot_be_hit_must_not_be_listed() {
+    let mut scene = scene();
+    let good = build("brute", &scene, 1);
+    good.validate(&scene).unwrap();
+    scene.vertices[0].position.x = f32::NAN;
+    assert!(good.validate(&scene).is_err());
+    build("brute", &scene, 1).validate(&scene).unwrap();
+}

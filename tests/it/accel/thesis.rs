@@ -1,0 +1,131 @@
+//! The published structures (SPEC sections 2 to 4, 7): properties and sizes, from the real models.
+
+use super::build;
+use rtbench::scene::Scene;
+
+/// Bunny and dragon, or `None` (said on stderr) where the models are not there.
+fn model(file: &str) -> Option<Scene> {
+    let Some(folder) = std::env::var_os("RTBENCH_SCENES") else {
+        eprintln!("NOT RUN: set RTBENCH_SCENES to the folder that holds {file}");
+        return None;
+    };
+    let path = std::path::Path::new(&folder).join(file);
+    Some(rtbench::scene::load(path.to_str().unwrap()).unwrap())
+}
+
+/// Published rows of one model. Sizes in MiB.
+struct Published {
+    file: &'static str,
+    grid: [u32; 3],
+    grid_fullest: u32,
+    grid_references: f64,
+    grid_mib: f64,
+    kd_leaves: f64,
+    kd_fullest: u32,
+    kd_references: f64,
+    kd_mib: f64,
+    bvh_nodes: f64,
+    bvh_mib: f64,
+}
+
+const BUNNY: Published = Published {
+    file: "bunny/bun_zipper.ply",
+    grid: [83, 82, 64],
+    grid_fullest: 24,
+    grid_references: 3.69,
+    grid_mib: 8.33,
+    kd_leaves: 153_698.0,
+    kd_fullest: 11,
+    kd_references: 5.45,
+    kd_mib: 9.22,
+    bvh_nodes: 45_814.0,
+    bvh_mib: 2.84,
+};
+
+const DRAGON: Published = Published {
+    file: "dragon/dragon_vrip.ply",
+    grid: [273, 193, 122],
+    grid_fullest: 121,
+    grid_references: 3.06,
+    grid_mib: 103.10,
+    kd_leaves: 977_816.0,
+    kd_fullest: 23,
+    kd_references: 2.27,
+    kd_mib: 58.50,
+    bvh_nodes: 589_110.0,
+    bvh_mib: 35.83,
+};
+
+fn mib(bytes: u64) -> f64 {
+    bytes as f64 / f64::from(1 << 20)
+}
+
+/// `value` is within `percent` of `published`.
+fn assert_near(what: &str, value: f64, published: f64, percent: f64) {
+    let off = 100.0 * (value / published - 1.0);
+    assert!(off.abs() <= percent, "{what}: {value} is {off:.2} % off the published {published}");
+}
+
+fn check(published: &Published) {
+    let Some(scene) = model(published.file) else { return };
+    let grid = build("grid", &scene, 0);
+    let p = grid.properties(&scene);
+    assert_eq!([p.cells_x, p.cells_y, p.cells_z].map(Option::unwrap), published.grid);
+    assert_eq!(p.max_cell_triangles, Some(published.grid_fullest));
+    assert_eq!(format!("{:.2}", p.references_per_triangle.unwrap()), format!("{:.2}", published.grid_references));
+    assert!((mib(grid.thesis_bytes(&scene)) - published.grid_mib).abs() <= 0.021, "grid size");
+
+    let tree = build("kdtree", &scene, 0);
+    let p = tree.properties(&scene);
+    assert_near("kd-tree leaves", p.leaves.unwrap().into(), published.kd_leaves, 7.5);
+    assert_near("kd-tree references", p.references_per_triangle.unwrap(), published.kd_references, 10.5);
+    assert_near("kd-tree size", mib(tree.thesis_bytes(&scene)), published.kd_mib, 7.5);
+    assert!(p.max_leaf_triangles.unwrap().abs_diff(published.kd_fullest) <= 2, "{:?}", p.max_leaf_triangles);
+
+    let bvh = build("bvh", &scene, 0);
+    let p = bvh.properties(&scene);
+    assert_near("BVH nodes", p.nodes.unwrap().into(), published.bvh_nodes, 6.0);
+    assert_near("BVH size", mib(bvh.thesis_bytes(&scene)), published.bvh_mib, 6.0);
+    assert_eq!(p.max_leaf_triangles, Some(4));
+    for structure in [grid, tree, bvh] {
+        structure.validate(&scene).unwrap();
+    }
+}
+
+#[test]
+fn bunny() {
+    check(&BUNNY);
+}
+
+#[test]
+fn dragon() {
+    check(&DRAGON);
+}
+
+/// The memory model itself, from the published counts alone: no model is needed.
+#[test]
+fn the_memory_model_gives_the_published_sizes() {
+    use rtbench::accel::bvh::{Bvh, BvhNode};
+    use rtbench::accel::grid::{Cell, Grid};
+    use rtbench::accel::kdtree::{KdNode, KdTree};
+    use rtbench::accel::{Record, Structure};
+    use rtbench::math::{Aabb, Vertex};
+
+    let bounds = Aabb::EMPTY;
+    for (published, triangles, vertices) in [(BUNNY, 69_451.0, 35_947), (DRAGON, 871_414.0, 437_645)] {
+        let scene = Scene { vertices: vec![Vertex::default(); vertices], ..Scene::default() };
+        let records =
+            |per_triangle: f64| vec![Record { vertices: [0; 3], triangle: 0 }; (per_triangle * triangles) as usize];
+        let size = |structure: Structure| mib(structure.thesis_bytes(&scene));
+        let cells = vec![Cell::default(); published.grid.iter().product::<u32>() as usize];
+        let resolution = published.grid;
+        let grid = Grid { bounds, resolution, cell_size: 1.0, cells, records: records(published.grid_references) };
+        assert!((size(Structure::Grid(grid)) - published.grid_mib).abs() < 0.03);
+        let nodes = vec![KdNode::leaf(0, 0); 2 * published.kd_leaves as usize - 1];
+        let tree = KdTree { bounds, nodes, records: records(published.kd_references), depth: 0 };
+        assert!((size(Structure::KdTree(tree)) - published.kd_mib).abs() < 0.08);
+        let nodes = vec![BvhNode::NONE; published.bvh_nodes as usize];
+        let bvh = Bvh { bounds, nodes, records: Vec::new(), depth: 0 };
+        assert!((size(Structure::Bvh(bvh)) - published.bvh_mib).abs() < 0.011);
+    }
+}
