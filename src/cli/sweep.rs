@@ -53,14 +53,14 @@ pub struct Arguments {
     /// Untimed frames before the first pass
     #[arg(long, value_name = "FRAMES")]
     warmup: Option<usize>,
-    #[command(flatten)]
-    device: DeviceArguments,
     /// Folder for the results, new or empty [default: results/TIME-DEVICE]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
     /// No progress, no table: only errors
     #[arg(long, short)]
     quiet: bool,
+    #[command(flatten)]
+    device: DeviceArguments,
 }
 
 const EXAMPLES: &str = "\
