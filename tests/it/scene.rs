@@ -1,1 +1,115 @@
-//! scene
+//! Scenes: readers, built-in scenes, loading by name.
+
+mod broken_ply;
+mod built_in;
+mod ply;
+
+use rtbench::scene::{self, Scene};
+use rtbench::{Error, Result};
+use std::path::PathBuf;
+
+/// The folder of real scenes, or a line on stderr that says that and why the test did not run.
+fn real_scenes(test: &str) -> Option<PathBuf> {
+    let folder = std::env::var_os("RTBENCH_SCENES").map(PathBuf::from);
+    if folder.is_none() {
+        eprintln!("{test}: did not run, RTBENCH_SCENES does not name a folder of scenes");
+    }
+    folder
+}
+
+/// Loads a scene of which these are the file's bytes.
+fn load_bytes(bytes: &[u8]) -> Result<Scene> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mesh.ply");
+    std::fs::write(&path, bytes).unwrap();
+    scene::load(path.to_str().unwrap())
+}
+
+/// The message of a refused scene; one line.
+fn refusal(result: Result<Scene>) -> String {
+    let error = result.expect_err("must be refused");
+    assert!(matches!(error, Error::Input(_)), "{error:?}");
+    let message = error.to_string();
+    assert!(!message.contains('\n'), "{message}");
+    message
+}
+
+#[test]
+fn names_that_are_neither_file_nor_scene_are_refused_with_a_mend() {
+    for (what, words) in [
+        ("hal", &["did you mean hall?", "sphereflake"][..]),
+        ("kitchen", &["no built-in scene", "terrain"]),
+        ("no/such/mesh.ply", &["no/such/mesh.ply: no such file"]),
+        ("mesh.PLY", &["mesh.PLY: no such file"]),
+        ("no/such/mesh", &["no such file"]),
+        ("hall:triangle=1000", &["no parameter `triangle`", "did you mean triangles?"]),
+        ("hall:triangles", &["key=value"]),
+        ("hall:triangles=many", &["not a whole number"]),
+        ("hall:triangles=-5", &["not a whole number"]),
+        ("hall:triangles=7", &["out of range", "15000"]),
+        ("hall:triangles=99999999999999", &["out of range"]),
+        ("hall:triangles=99999999999999999999999999", &["not a whole number"]),
+        ("", &["no built-in scene"]),
+    ] {
+        let message = refusal(scene::load(what));
+        for word in words {
+            assert!(message.contains(word), "{what}: {message}");
+        }
+    }
+}
+
+#[test]
+fn files_of_unknown_kind_and_folders_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = folder.path().join("mesh.txt");
+    std::fs::write(&text, "ply\n").unwrap();
+    let message = refusal(scene::load(text.to_str().unwrap()));
+    assert!(message.contains("format is unknown") && message.contains("ply"), "{message}");
+    let mesh = folder.path().join("folder.ply");
+    std::fs::create_dir(&mesh).unwrap();
+    assert!(refusal(scene::load(mesh.to_str().unwrap())).contains("not a regular file"));
+}
+
+#[test]
+fn check_sees_every_broken_invariant() {
+    let sound = load_bytes(ply::CUBE.as_bytes()).unwrap();
+    sound.check().unwrap();
+    let faults: [(&str, fn(&mut Scene)); 9] = [
+        ("no triangle", |s| s.triangles.clear()),
+        ("uses a vertex beyond", |s| s.triangles[3].vertices[1] = 8),
+        ("uses a material beyond", |s| s.triangles[3].material = 1),
+        ("vertex 2 is not finite", |s| s.vertices[2].position.y = f32::NAN),
+        ("vertex 2 is not finite", |s| s.vertices[2].normal.y = f32::INFINITY),
+        ("too large", |s| s.vertices[2].position.y = 3e38),
+        ("material 0 is outside", |s| s.materials[0].reflectivity = 1.5),
+        ("material 0 is outside", |s| s.materials[0].diffuse.x = -1.0),
+        ("light 0 is not finite", |s| s.lights.push(scene::Light::new(glam::Vec3::NAN, glam::Vec3::ONE))),
+    ];
+    for (words, break_it) in faults {
+        let mut broken = sound.clone();
+        break_it(&mut broken);
+        let message = broken.check().expect_err(words).to_string();
+        assert!(message.contains(words), "{message}");
+    }
+}
+
+#[test]
+fn the_content_hash_sees_every_part_and_no_name() {
+    let scene = scene::load("hall:triangles=15000").unwrap();
+    let hash = scene.content_hash();
+    assert_eq!(hash.len(), 64);
+    let changes: [fn(&mut Scene); 5] = [
+        |s| s.vertices[7].normal.x += 0.5,
+        |s| s.triangles.swap(0, 1),
+        |s| s.materials[0].exponent += 1.0,
+        |s| s.lights[0].colour.x += 0.1,
+        |s| s.background.x += 0.1,
+    ];
+    for change in changes {
+        let mut changed = scene.clone();
+        change(&mut changed);
+        assert_ne!(changed.content_hash(), hash);
+    }
+    let renamed = Scene { name: "other".into(), ..scene };
+    assert_eq!(renamed.content_hash(), hash);
+}

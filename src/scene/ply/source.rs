@@ -33,7 +33,7 @@ pub trait Source {
     /// Passes over `n` values.
     fn skip(&mut self, kind: Scalar, n: u64) -> Result<(), Bad>;
     /// Bytes not yet read, blanks apart.
-    fn left(&mut self) -> usize;
+    fn left(&self) -> usize;
     /// Line of the current row; `None` in a binary file.
     fn line(&self) -> Option<usize>;
     /// The text that was read last, where it is text.
@@ -126,11 +126,9 @@ impl Source for Ascii<'_> {
         Ok(())
     }
 
-    fn left(&mut self) -> usize {
-        while self.bytes.get(self.at).is_some_and(|&b| b <= b' ') {
-            self.at += 1;
-        }
-        self.bytes.len() - self.at
+    fn left(&self) -> usize {
+        let rest = &self.bytes[self.at..];
+        rest.len() - rest.iter().take_while(|&&b| b <= b' ').count()
     }
 
     fn line(&self) -> Option<usize> {
@@ -212,7 +210,7 @@ impl<const BIG_ENDIAN: bool> Source for Binary<'_, BIG_ENDIAN> {
         Ok(())
     }
 
-    fn left(&mut self) -> usize {
+    fn left(&self) -> usize {
         self.bytes.len()
     }
 

@@ -2,7 +2,7 @@
 //! walls and polished exhibits (the character of BART's museum). Lamps hang inside; nothing leaves the hall.
 
 use super::mesh::{MaterialId, Mesh, fit, segments};
-use super::shapes::{curve, profile, turn};
+use super::shapes::{profile, turn};
 use super::{Parameter, SceneInfo, Values, assemble};
 use crate::scene::{Light, Material, Scene};
 use glam::{Affine3A, Vec3};
@@ -11,7 +11,7 @@ use std::f32::consts::{PI, TAU};
 pub(super) const INFO: SceneInfo = SceneInfo {
     name: "hall",
     character: "enclosed: a museum hall with columns, four lights, many mirrors",
-    parameters: &[Parameter::triangles(60_000, 8_000)],
+    parameters: &[Parameter::triangles(60_000, 15_000)],
     build,
 };
 
@@ -55,7 +55,8 @@ struct Materials {
 }
 
 fn materials(mesh: &mut Mesh) -> Materials {
-    let matt = |r, g, b| Material::matt(Vec3::new(r, g, b));
+    // More ambient light than usual: it stands for what walls and floor throw back.
+    let matt = |r, g, b| Material { ambient: Vec3::new(r, g, b) * 0.22, ..Material::matt(Vec3::new(r, g, b)) };
     let mut add = |material| mesh.material(material);
     Materials {
         tiles: [
@@ -63,7 +64,7 @@ fn materials(mesh: &mut Mesh) -> Materials {
             add(matt(0.13, 0.12, 0.13).shiny(Vec3::splat(0.4), 80.0, 0.28)),
         ],
         plaster: add(matt(0.66, 0.58, 0.47)),
-        vault: add(matt(0.70, 0.68, 0.64)),
+        vault: add(Material { ambient: Vec3::new(0.25, 0.24, 0.22), ..matt(0.70, 0.68, 0.64) }),
         stone: add(matt(0.60, 0.56, 0.50).shiny(Vec3::splat(0.12), 20.0, 0.0)),
         marble: add(matt(0.52, 0.40, 0.36).shiny(Vec3::splat(0.5), 70.0, 0.12)),
         mirror: add(matt(0.06, 0.06, 0.07).shiny(Vec3::splat(0.6), 200.0, 0.80)),
@@ -118,7 +119,7 @@ fn shell(mesh: &mut Mesh, m: &Materials, detail: f32) {
     }
     let arch = |u: f32| Vec3::new(NAVE * (PI * u).cos(), HEIGHT + NAVE * (PI * u).sin(), 0.0);
     let cells = [segments(32.0, detail, 8), segments(28.0, detail, 7)];
-    mesh.surface(m.vault, cells, [false; 2], |u, v| arch(u) + Vec3::Z * (LENGTH * (2.0 * v - 1.0)));
+    mesh.surface(m.vault, cells, [false; 2], |u, v| arch(u) + Vec3::Z * (LENGTH * (1.0 - 2.0 * v)));
     // Ribs over the columns.
     for i in 0..COLUMNS {
         let path: Vec<Vec3> =
@@ -258,8 +259,6 @@ fn lamp(mesh: &mut Mesh, m: &Materials, detail: f32) {
     mesh.bar(m.gold, Vec3::new(0.0, 0.2, 0.0), Vec3::new(0.0, top, 0.0), 0.025, segments(8.0, detail, 4));
     let shade = [(0.60, 0.0), (0.56, 0.09), (0.40, 0.18), (0.16, 0.24), (0.0, 0.25)];
     mesh.lathe(m.gold, &profile(&shade, segments(12.0, detail, 4)), around);
-    mesh.disc(m.glow, Vec3::new(0.0, 0.01, 0.0), -Vec3::Y, 0.58, around);
-    let ring = curve(&[Vec3::new(0.60, 0.0, 0.0), Vec3::new(0.60, -0.03, 0.0), Vec3::new(0.60, -0.05, 0.0)], 2);
-    let ring: Vec<(f32, f32)> = ring.iter().map(|p| (p.x, p.y)).rev().collect();
-    mesh.lathe_sharp(m.gold, &ring, around);
+    mesh.disc(m.glow, Vec3::new(0.0, -0.045, 0.0), -Vec3::Y, 0.60, around);
+    mesh.lathe_sharp(m.gold, &[(0.60, -0.05), (0.60, 0.0)], around);
 }

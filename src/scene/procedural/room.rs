@@ -12,7 +12,7 @@ use std::f32::consts::{FRAC_PI_2, PI};
 pub(super) const INFO: SceneInfo = SceneInfo {
     name: "room",
     character: "furnished room: long thin triangles beside dense chairs, six lights, few mirrors",
-    parameters: &[Parameter::triangles(80_000, 12_000)],
+    parameters: &[Parameter::triangles(80_000, 20_000)],
     build,
 };
 
@@ -27,7 +27,7 @@ const SILL: f32 = 0.95;
 
 fn build(values: &Values) -> Scene {
     let mesh = fit(values.triangles(), geometry);
-    let lights = lamps().map(|p| Light::new(p - Vec3::Y * 0.30, Vec3::new(0.20, 0.195, 0.18))).to_vec();
+    let lights = lamps().map(|p| Light::new(p - Vec3::Y * 0.30, Vec3::new(0.195, 0.19, 0.178))).to_vec();
     assemble(mesh, lights, Vec3::new(0.55, 0.70, 0.90), Some("room"))
 }
 
@@ -54,18 +54,19 @@ struct Materials {
 }
 
 fn materials(mesh: &mut Mesh) -> Materials {
-    let matt = |r, g, b| Material::matt(Vec3::new(r, g, b));
+    // More ambient light than usual: it stands for what walls and ceiling throw back.
+    let matt = |r, g, b| Material { ambient: Vec3::new(r, g, b) * 0.28, ..Material::matt(Vec3::new(r, g, b)) };
     let mut add = |material| mesh.material(material);
     Materials {
-        wall: add(matt(0.74, 0.70, 0.62)),
-        ceiling: add(matt(0.80, 0.80, 0.78)),
-        carpet: add(matt(0.22, 0.27, 0.33)),
+        wall: add(matt(0.68, 0.64, 0.56)),
+        ceiling: add(Material { ambient: Vec3::splat(0.50), ..matt(0.80, 0.80, 0.78) }),
+        carpet: add(matt(0.30, 0.35, 0.40)),
         wood: add(matt(0.40, 0.24, 0.12).shiny(Vec3::splat(0.15), 30.0, 0.0)),
         table: add(matt(0.34, 0.17, 0.08).shiny(Vec3::splat(0.4), 80.0, 0.14)),
         white: add(matt(0.86, 0.87, 0.88).shiny(Vec3::splat(0.2), 40.0, 0.0)),
         slat: add(matt(0.78, 0.76, 0.70).shiny(Vec3::splat(0.2), 30.0, 0.0)),
         metal: add(matt(0.22, 0.22, 0.24).shiny(Vec3::splat(0.8), 90.0, 0.35)),
-        cloth: add(matt(0.13, 0.20, 0.36)),
+        cloth: add(matt(0.18, 0.28, 0.48)),
         china: add(matt(0.82, 0.80, 0.76).shiny(Vec3::splat(0.5), 80.0, 0.0)),
         glass: add(matt(0.06, 0.09, 0.12).shiny(Vec3::splat(0.7), 150.0, 0.45)),
         glow: add(Material { ambient: Vec3::splat(0.98), ..matt(0.3, 0.3, 0.3) }),
@@ -276,11 +277,11 @@ fn chair(mesh: &mut Mesh, m: &Materials, detail: f32) {
             (0.013, -0.22),
         ];
         let path: Vec<Vec3> = tube.iter().map(|&(y, z)| Vec3::new(side, y, z)).collect();
-        mesh.tube(m.metal, &curve(&path, rows), |_| 0.012, around);
+        mesh.rod(m.metal, &curve(&path, rows), 0.012, around);
         let rest = [(0.62, -0.215), (0.66, -0.12), (0.665, 0.05), (0.64, 0.14), (0.46, 0.20)];
         let out = side.signum() * 0.03;
         let path: Vec<Vec3> = rest.iter().map(|&(y, z)| Vec3::new(side + out, y, z)).collect();
-        mesh.tube(m.metal, &curve(&path, rows / 2), |_| 0.010, around);
+        mesh.rod(m.metal, &curve(&path, rows / 2), 0.010, around);
         mesh.block(m.wood, Vec3::new(side + out, 0.677, 0.0), Vec3::new(0.045, 0.02, 0.22));
     }
     mesh.bar(m.metal, Vec3::new(-0.24, 0.013, -0.22), Vec3::new(0.24, 0.013, -0.22), 0.012, around);
@@ -412,5 +413,5 @@ fn board_and_door(mesh: &mut Mesh, m: &Materials, detail: f32) {
         Vec3::new(-3.90, 1.05, Z - 0.10),
         Vec3::new(-4.00, 1.05, Z - 0.10),
     ];
-    mesh.tube(m.metal, &curve(&handle, segments(16.0, detail, 6)), |_| 0.011, segments(10.0, detail, 5));
+    mesh.rod(m.metal, &curve(&handle, segments(16.0, detail, 6)), 0.011, segments(10.0, detail, 5));
 }

@@ -15,6 +15,10 @@ pub fn curve(points: &[Vec3], steps: usize) -> Vec<Vec3> {
     let last = points.len() - 1;
     let at = |i: isize| points[i.clamp(0, last as isize) as usize];
     let sample = |s: usize| {
+        // To the bit: a profile that ends on the axis must end on the axis.
+        if s == steps {
+            return points[last];
+        }
         let x = s as f32 / steps as f32 * last as f32;
         let i = (x.floor() as isize).min(last as isize - 1);
         let t = x - i as f32;
@@ -165,10 +169,15 @@ impl Mesh {
 
     /// A straight round bar with flat ends.
     pub fn bar(&mut self, material: MaterialId, from: Vec3, to: Vec3, radius: f32, around: usize) {
-        self.tube(material, &[from, to], |_| radius, around);
-        let along = (to - from).normalize();
-        self.disc(material, from, -along, radius, around);
-        self.disc(material, to, along, radius, around);
+        self.rod(material, &[from, to], radius, around);
+    }
+
+    /// A tube of one radius with flat ends.
+    pub fn rod(&mut self, material: MaterialId, path: &[Vec3], radius: f32, around: usize) {
+        self.tube(material, path, |_| radius, around);
+        let last = path.len() - 1;
+        self.disc(material, path[0], (path[0] - path[1]).normalize(), radius, around);
+        self.disc(material, path[last], (path[last] - path[last - 1]).normalize(), radius, around);
     }
 
     /// A flat disc that faces `normal`.

@@ -23,7 +23,9 @@ const ROWS: usize = 26;
 
 fn build(values: &Values) -> Scene {
     let mesh = fit(values.triangles(), geometry);
-    let lights = masts().map(|p| Light::new(p - Vec3::Y * 2.0, Vec3::new(0.30, 0.295, 0.28))).to_vec();
+    // In front of the lamps, so that no mast shades its own light.
+    let before = |p: Vec3| p * 0.97 + Vec3::Y * 4.0;
+    let lights = masts().map(|p| Light::new(before(p), Vec3::new(0.34, 0.335, 0.32))).to_vec();
     assemble(mesh, lights, Vec3::new(0.36, 0.52, 0.78), Some("stadium"))
 }
 
@@ -58,7 +60,7 @@ fn pedestal(mesh: &mut Mesh, detail: f32) {
     mesh.teapot(china, gold, detail);
     mesh.place = Affine3A::IDENTITY;
     let around = segments(48.0, detail, 8);
-    mesh.lathe_sharp(marble, &[(0.42, 0.0), (0.42, 0.10), (0.34, 0.10)], around);
+    mesh.lathe_sharp(marble, &[(0.42, 0.0), (0.42, 0.10), (0.29, 0.10)], around);
     let shaft = [(0.30, 0.10), (0.22, 0.18), (0.17, 0.45), (0.18, 0.75), (0.26, 0.90), (0.30, 0.94)];
     mesh.lathe(marble, &profile(&shaft, segments(24.0, detail, 4)), around);
     mesh.lathe_sharp(marble, &[(0.30, 0.94), (0.34, 0.94), (0.34, TABLE), (0.0, TABLE)], around);
@@ -137,7 +139,8 @@ fn stands(mesh: &mut Mesh, detail: f32) {
 
 /// A canopy over the upper rows on slender posts.
 fn roof(mesh: &mut Mesh, detail: f32) {
-    let sheet = mesh.material(Material::matt(Vec3::new(0.70, 0.72, 0.76)).shiny(Vec3::splat(0.3), 30.0, 0.0));
+    let sheet = Material { ambient: Vec3::splat(0.22), ..Material::matt(Vec3::new(0.70, 0.72, 0.76)) };
+    let sheet = mesh.material(sheet.shiny(Vec3::splat(0.3), 30.0, 0.0));
     let steel = mesh.material(Material::matt(Vec3::splat(0.35)).shiny(Vec3::splat(0.4), 30.0, 0.0));
     let [around, across] = [segments(112.0, detail, 24), segments(6.0, detail, 2)];
     let arch = |v: f32| (11.0 + 17.5 * v, 20.5 + 2.2 * (1.0 - (2.0 * v - 1.0) * (2.0 * v - 1.0)) - 2.5 * v);
@@ -149,6 +152,13 @@ fn roof(mesh: &mut Mesh, detail: f32) {
         let (out, y) = arch(v);
         oval(u, out, y - 0.35)
     });
+    // The edges between the two sheets.
+    for (edge, down) in [(0.0, true), (1.0, false)] {
+        mesh.surface(sheet, [around, 1], [false; 2], |u, v| {
+            let (out, y) = arch(edge);
+            oval(u, out, y - 0.35 * if down { v } else { 1.0 - v })
+        });
+    }
     for i in 0..32 {
         let share = (i as f32 + 0.5) / 32.0;
         let foot = oval(share, 26.0, 13.5);

@@ -6,6 +6,7 @@ use super::{Parameter, SceneInfo, Values, assemble};
 use crate::math::Vertex;
 use crate::scene::{Light, Material, Scene, Triangle, normals};
 use glam::{Vec2, Vec3};
+use rayon::prelude::*;
 
 pub(super) const INFO: SceneInfo = SceneInfo {
     name: "terrain",
@@ -17,14 +18,14 @@ pub(super) const INFO: SceneInfo = SceneInfo {
 /// Edge of the square, in kilometres.
 const SIDE: f32 = 10.0;
 /// Height of the lakes.
-const LAKE: f32 = 0.42;
+const LAKE: f32 = 0.38;
 
 /// Height over the sea at (x, z).
 fn height(p: Vec2) -> f32 {
     let bend = Vec2::new(noise2(p * 0.5, 101), noise2(p * 0.5, 102));
     let crests = ridged((p + bend * 0.5) * 0.42, 9, 7);
     let broad = 0.5 + 0.7 * noise2(p * 0.19 + Vec2::splat(3.1), 55);
-    let rough = fractal(Vec3::new(p.x, 0.0, p.y) * 1.7, 6, 31);
+    let rough = fractal(6, |scale, i| noise2(p * (1.7 * scale), 31 + i));
     2.2 * crests * crests * broad.clamp(0.12, 1.0) + 0.10 * rough + 0.12
 }
 
@@ -33,20 +34,24 @@ fn build(values: &Values) -> Scene {
     // Two triangles per cell; the lakes' own cells are eight times as wide and few.
     let n = ((target * 0.995 / 2.0).sqrt().floor() as usize).max(8);
     let mut mesh = Mesh::plain();
-    let grass = mesh.material(Material::matt(Vec3::new(0.27, 0.36, 0.13)));
-    let rock = mesh.material(Material::matt(Vec3::new(0.42, 0.38, 0.34)).shiny(Vec3::splat(0.06), 8.0, 0.0));
-    let snow = mesh.material(Material::matt(Vec3::new(0.88, 0.90, 0.95)).shiny(Vec3::splat(0.15), 20.0, 0.0));
-    let sand = mesh.material(Material::matt(Vec3::new(0.60, 0.53, 0.38)));
+    // What lies in the shade has the light of the sky.
+    let ground = |r, g, b| {
+        let colour = Vec3::new(r, g, b);
+        Material { ambient: colour * Vec3::new(0.20, 0.23, 0.28), ..Material::matt(colour) }
+    };
+    let grass = mesh.material(ground(0.27, 0.36, 0.13));
+    let rock = mesh.material(ground(0.42, 0.38, 0.34).shiny(Vec3::splat(0.06), 8.0, 0.0));
+    let snow = mesh.material(ground(0.88, 0.90, 0.95).shiny(Vec3::splat(0.15), 20.0, 0.0));
+    let sand = mesh.material(ground(0.60, 0.53, 0.38));
     let lake = mesh.material(Material::matt(Vec3::new(0.05, 0.12, 0.17)).shiny(Vec3::splat(0.6), 120.0, 0.5));
 
     let row = n as u32 + 1;
     let place = |i: usize, n: usize| (i as f32 / n as f32 - 0.5) * SIDE;
-    for j in 0..=n {
-        for i in 0..=n {
-            let p = Vec2::new(place(i, n), place(j, n));
-            mesh.vertices.push(Vertex::new(Vec3::new(p.x, height(p), p.y), Vec3::ZERO));
-        }
-    }
+    let vertex = |k: usize| {
+        let p = Vec2::new(place(k % (n + 1), n), place(k / (n + 1), n));
+        Vertex::new(Vec3::new(p.x, height(p), p.y), Vec3::ZERO)
+    };
+    mesh.vertices = (0..(n + 1) * (n + 1)).into_par_iter().map(vertex).collect();
     for j in 0..n as u32 {
         for i in 0..n as u32 {
             let a = j * row + i;
@@ -60,9 +65,9 @@ fn build(values: &Values) -> Scene {
                 let border = 0.12 * noise2(Vec2::new(middle.x, middle.z) * 3.0, 77);
                 let material = if middle.y < LAKE + 0.02 {
                     sand
-                } else if middle.y + border > 1.05 && level > 0.62 {
+                } else if middle.y + border > 0.98 && level > 0.60 {
                     snow
-                } else if level < 0.72 || middle.y + border > 0.95 {
+                } else if level < 0.72 || middle.y + border > 0.85 {
                     rock
                 } else {
                     grass
@@ -73,7 +78,7 @@ fn build(values: &Values) -> Scene {
     }
     normals::smooth(&mut mesh.vertices, &mesh.triangles);
     lakes(&mut mesh, lake, n);
-    let sun = Light::new(Vec3::new(-14.0, 12.0, 9.0), Vec3::new(1.0, 0.96, 0.88));
+    let sun = Light::new(Vec3::new(-9.0, 15.0, 7.0), Vec3::new(1.0, 0.96, 0.88));
     assemble(mesh, vec![sun], Vec3::new(0.55, 0.70, 0.90), Some("terrain"))
 }
 
@@ -83,11 +88,11 @@ fn lakes(mesh: &mut Mesh, material: u32, n: usize) {
     let edge = SIDE / wide as f32;
     for j in 0..wide {
         for i in 0..wide {
-            let corner = Vec2::new(i as f32, j as f32) * edge - Vec2::splat(SIDE * 0.5);
-            let lowest = (0..81)
-                .map(|k| height(corner + Vec2::new((k % 9) as f32, (k / 9) as f32) * (edge / 8.0)))
-                .fold(f32::INFINITY, f32::min);
-            if lowest < LAKE {
+            // The ground's vertices on and around the wide cell.
+            let span = |k: usize| k * n / wide..=((k + 1) * n).div_ceil(wide);
+            let is_low = |k: usize| mesh.vertices[k].position.y < LAKE;
+            if span(j).any(|row| span(i).any(|column| is_low(row * (n + 1) + column))) {
+                let corner = Vec2::new(i as f32, j as f32) * edge - Vec2::splat(SIDE * 0.5);
                 mesh.quad(material, Vec3::new(corner.x, LAKE, corner.y), Vec3::Z * edge, Vec3::X * edge, [1, 1]);
             }
         }

@@ -1,7 +1,13 @@
-//! Cameras, and the paths they (or the light) travel.
+//! Cameras, and the paths they (or the light) travel: files in `camera-paths/`, see the README there.
+
+mod file;
+mod orbit;
+mod path;
+mod walk;
 
 use crate::scene::Light;
 use glam::Vec3;
+pub use path::{CameraPath, names};
 
 /// A pinhole camera.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,0 +1,261 @@
+//! Reading a camera path file (TOML); the format is described in `camera-paths/README.md`.
+
+use super::orbit::{LightOrbit, Orbit};
+use super::path::{CameraPath, Kind, PathLight};
+use super::walk::{Aim, Key, Walk};
+use crate::error::{Error, Result};
+use glam::Vec3;
+use serde::Deserialize;
+use std::ops::Range;
+use std::path::Path;
+use toml::Spanned;
+
+/// Most frames that a path may have: views are held in memory.
+const MAX_FRAMES: usize = 1_000_000;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    kind: Spanned<String>,
+    #[serde(default)]
+    #[allow(dead_code)] // For people who read the file.
+    description: String,
+    frames: Option<Spanned<usize>>,
+    field_of_view: Option<Spanned<f32>>,
+    up: Option<Spanned<[f32; 3]>>,
+    #[serde(default)]
+    lights: Vec<FileLight>,
+    // Orbits.
+    distance: Option<Spanned<f32>>,
+    height: Option<Spanned<f32>>,
+    start: Option<Spanned<f32>>,
+    light_distance: Option<Spanned<f32>>,
+    light_height: Option<Spanned<f32>>,
+    light_start: Option<Spanned<f32>>,
+    light_colour: Option<Spanned<[f32; 3]>>,
+    // Walks.
+    relative: Option<Spanned<bool>>,
+    keys: Option<Vec<Spanned<FileKey>>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileLight {
+    position: Spanned<[f32; 3]>,
+    colour: Option<Spanned<[f32; 3]>>,
+    #[serde(default)]
+    relative: bool,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileKey {
+    time: Spanned<f32>,
+    position: Spanned<[f32; 3]>,
+    target: Option<Spanned<[f32; 3]>>,
+    direction: Option<Spanned<[f32; 3]>>,
+    up: Option<Spanned<[f32; 3]>>,
+}
+
+/// The file's name and text: turns a span into a line.
+struct Source<'a> {
+    place: &'a str,
+    text: &'a str,
+}
+
+impl Source<'_> {
+    fn fault(&self, span: Range<usize>, problem: impl Into<String>, mend: impl Into<String>) -> Error {
+        let before = &self.text.as_bytes()[..span.start.min(self.text.len())];
+        let line = 1 + before.iter().filter(|&&b| b == b'\n').count();
+        Error::file(Path::new(self.place), Some(line), problem, mend)
+    }
+
+    /// The value or a default, held against a range (bounds excluded).
+    fn number(&self, value: &Option<Spanned<f32>>, key: &str, default: f32, range: Range<f32>) -> Result<f32> {
+        let Some(given) = value else { return Ok(default) };
+        let number = *given.get_ref();
+        if number > range.start && number < range.end {
+            return Ok(number);
+        }
+        let mend = format!("it must lie between {} and {}", range.start, range.end);
+        Err(self.fault(given.span(), format!("{key} = {number} is out of range"), mend))
+    }
+
+    fn vector(&self, value: &Spanned<[f32; 3]>, key: &str) -> Result<Vec3> {
+        let vector = Vec3::from(*value.get_ref());
+        if vector.is_finite() && vector.abs().max_element() <= MAX_LENGTH {
+            return Ok(vector);
+        }
+        Err(self.fault(value.span(), format!("{key} is not finite or too large"), "give three plain numbers"))
+    }
+
+    /// A vector that points somewhere.
+    fn direction(&self, value: &Spanned<[f32; 3]>, key: &str) -> Result<Vec3> {
+        let vector = self.vector(value, key)?.normalize_or_zero();
+        if vector == Vec3::ZERO {
+            return Err(self.fault(value.span(), format!("{key} is zero"), "give it a direction"));
+        }
+        Ok(vector)
+    }
+
+    fn colour(&self, value: &Option<Spanned<[f32; 3]>>, key: &str) -> Result<Vec3> {
+        let Some(given) = value else { return Ok(Vec3::ONE) };
+        let colour = self.vector(given, key)?;
+        if colour.min_element() < 0.0 {
+            return Err(self.fault(given.span(), format!("{key} is negative"), "colours are 0 or more, linear"));
+        }
+        Ok(colour)
+    }
+
+    /// A key that this kind of path does not have.
+    fn refuse<T>(&self, value: &Option<Spanned<T>>, key: &str, kind: &str) -> Result<()> {
+        match value {
+            None => Ok(()),
+            Some(given) => {
+                Err(self.fault(given.span(), format!("`{key}` has no meaning for kind {kind}"), "remove it"))
+            }
+        }
+    }
+}
+
+/// Coordinates beyond this have no meaning beside a scene whose diagonal is finite.
+const MAX_LENGTH: f32 = 1e18;
+
+/// Reads a path. `name` is its own, `place` stands in errors.
+pub(super) fn parse(name: &str, place: &str, text: &str) -> Result<CameraPath> {
+    let source = Source { place, text };
+    let file: File = toml::from_str(text).map_err(|e| {
+        let problem = e.message().lines().collect::<Vec<_>>().join(" ");
+        source.fault(e.span().unwrap_or(0..0), problem, "camera-paths/README.md describes the format")
+    })?;
+    let frames = match &file.frames {
+        None => 400,
+        Some(frames) if (1..=MAX_FRAMES).contains(frames.get_ref()) => *frames.get_ref(),
+        Some(frames) => {
+            let mend = format!("it must be 1 to {MAX_FRAMES}");
+            return Err(source.fault(frames.span(), format!("frames = {}", frames.get_ref()), mend));
+        }
+    };
+    let up = file.up.as_ref().map_or(Ok(Vec3::Y), |up| source.direction(up, "up"))?;
+    let field_of_view = source.number(&file.field_of_view, "field_of_view", 45.0, 0.0..180.0)?;
+    let kind = match file.kind.get_ref().as_str() {
+        "orbit" => {
+            refuse_walk(&source, &file, "orbit")?;
+            refuse_light(&source, &file, "orbit")?;
+            Kind::Orbit(orbit(&source, &file)?)
+        }
+        "light-orbit" => {
+            refuse_walk(&source, &file, "light-orbit")?;
+            if let Some(light) = file.lights.first() {
+                let problem = "`lights` have no meaning for kind light-orbit";
+                return Err(source.fault(light.position.span(), problem, "its one light is given by light_distance"));
+            }
+            Kind::LightOrbit(LightOrbit {
+                camera: orbit(&source, &file)?,
+                light_distance: source.number(&file.light_distance, "light_distance", 2.0, -1e6..1e6)?,
+                light_height: source.number(&file.light_height, "light_height", 1.0, -1e6..1e6)?,
+                light_start: source.number(&file.light_start, "light_start", 0.0, -1e6..1e6)?,
+                light_colour: source.colour(&file.light_colour, "light_colour")?,
+            })
+        }
+        "walk" => {
+            for (value, key) in [(&file.distance, "distance"), (&file.height, "height"), (&file.start, "start")] {
+                source.refuse(value, key, "walk")?;
+            }
+            refuse_light(&source, &file, "walk")?;
+            Kind::Walk(walk(&source, &file, up)?)
+        }
+        other => {
+            let mend = "kinds are orbit, light-orbit, walk";
+            return Err(source.fault(file.kind.span(), format!("kind {other:?} is unknown"), mend));
+        }
+    };
+    let lights = file.lights.iter().map(|light| {
+        Ok(PathLight {
+            position: source.vector(&light.position, "position")?,
+            colour: source.colour(&light.colour, "colour")?,
+            relative: light.relative,
+        })
+    });
+    Ok(CameraPath {
+        name: name.to_owned(),
+        frames,
+        field_of_view,
+        up,
+        kind,
+        lights: lights.collect::<Result<_>>()?,
+        hash: blake3::hash(text.as_bytes()).to_hex().to_string(),
+        place: place.to_owned(),
+    })
+}
+
+fn refuse_walk(source: &Source, file: &File, kind: &str) -> Result<()> {
+    if let Some(key) = file.keys.as_ref().and_then(|keys| keys.first()) {
+        return Err(source.fault(key.span(), format!("`keys` have no meaning for kind {kind}"), "use kind = \"walk\""));
+    }
+    source.refuse(&file.relative, "relative", kind)
+}
+
+fn refuse_light(source: &Source, file: &File, kind: &str) -> Result<()> {
+    source.refuse(&file.light_distance, "light_distance", kind)?;
+    source.refuse(&file.light_height, "light_height", kind)?;
+    source.refuse(&file.light_start, "light_start", kind)?;
+    source.refuse(&file.light_colour, "light_colour", kind)
+}
+
+fn orbit(source: &Source, file: &File) -> Result<Orbit> {
+    let distance = match &file.distance {
+        None => None,
+        given => Some(source.number(given, "distance", 0.0, 0.0..1e6)?),
+    };
+    let height = source.number(&file.height, "height", 0.5, -1e6..1e6)?;
+    Ok(Orbit { distance, height, start: source.number(&file.start, "start", 0.0, -1e6..1e6)? })
+}
+
+fn walk(source: &Source, file: &File, up: Vec3) -> Result<Walk> {
+    let given = file.keys.as_deref().unwrap_or_default();
+    if given.len() < 2 {
+        let problem = format!("a walk needs two keys or more, here are {}", given.len());
+        let span = given.first().map_or(file.kind.span(), Spanned::span);
+        return Err(source.fault(span, problem, "add [[keys]] with time, position and target"));
+    }
+    let mut keys: Vec<Key> = Vec::with_capacity(given.len());
+    for spanned in given {
+        let key = spanned.get_ref();
+        let time = *key.time.get_ref();
+        if !(time.abs() < 1e9) || keys.last().is_some_and(|before| time <= before.time) {
+            let problem = format!("time = {time} is not greater than the key's before it");
+            return Err(source.fault(key.time.span(), problem, "the keys' times must increase"));
+        }
+        let position = source.vector(&key.position, "position")?;
+        let aim = match (&key.target, &key.direction) {
+            (Some(target), None) => {
+                let at = source.vector(target, "target")?;
+                if at == position {
+                    let problem = "the camera stands on its target";
+                    return Err(source.fault(target.span(), problem, "move one of them"));
+                }
+                Aim::Target(at)
+            }
+            (None, Some(direction)) => Aim::Direction(source.direction(direction, "direction")?),
+            _ => {
+                let problem = "a key needs either a target or a direction";
+                return Err(source.fault(spanned.span(), problem, "give exactly one of them"));
+            }
+        };
+        let own_up = key.up.as_ref().map(|up| source.direction(up, "up")).transpose()?;
+        // In relative coordinates a target's direction is known only with the scene: views() looks again.
+        let along = match aim {
+            Aim::Target(target) if !file.relative.as_ref().is_some_and(|r| *r.get_ref()) => target - position,
+            Aim::Direction(direction) => direction,
+            Aim::Target(_) => Vec3::ZERO,
+        };
+        let along = along.normalize_or_zero();
+        if along != Vec3::ZERO && along.cross(own_up.unwrap_or(up)).length() < 1e-3 {
+            let span = key.direction.as_ref().or(key.target.as_ref()).map_or(spanned.span(), Spanned::span);
+            return Err(source.fault(span, "the camera looks along its up vector", "give this key another `up`"));
+        }
+        keys.push(Key { time, position, aim, up: own_up });
+    }
+    Ok(Walk { keys, relative: file.relative.as_ref().is_some_and(|r| *r.get_ref()) })
+}

@@ -1,0 +1,192 @@
+//! A camera path: what a file in `camera-paths/` says, fitted to a scene, frame by frame.
+
+use super::file;
+use super::orbit::{LightOrbit, Orbit};
+use super::walk::Walk;
+use super::{Camera, View};
+use crate::backend::Config;
+use crate::error::{Error, Result};
+use crate::math::Aabb;
+use crate::scene::{Light, Scene, did_you_mean};
+use glam::Vec3;
+use std::path::Path;
+
+/// The files that are part of the program, so that it works wherever it stands. Name and text.
+const EMBEDDED: &[(&str, &str)] = &[
+    ("orbit", include_str!("../../camera-paths/orbit.toml")),
+    ("light-orbit", include_str!("../../camera-paths/light-orbit.toml")),
+    ("terrain", include_str!("../../camera-paths/terrain.toml")),
+    ("sphereflake", include_str!("../../camera-paths/sphereflake.toml")),
+    ("stadium", include_str!("../../camera-paths/stadium.toml")),
+    ("hall", include_str!("../../camera-paths/hall.toml")),
+    ("room", include_str!("../../camera-paths/room.toml")),
+];
+
+/// The names of the embedded paths.
+pub fn names() -> Vec<&'static str> {
+    EMBEDDED.iter().map(|(name, _)| *name).collect()
+}
+
+/// A path as read from a file; [`CameraPath::views`] fits it to a scene.
+#[derive(Clone, Debug)]
+pub struct CameraPath {
+    /// The embedded path's name, or the file's stem.
+    pub name: String,
+    /// Number of frames of the whole path.
+    pub frames: usize,
+    /// Vertical field of view in degrees.
+    pub field_of_view: f32,
+    /// Roughly up; a walk's keys may have their own.
+    pub up: Vec3,
+    pub(super) kind: Kind,
+    /// Lights that replace the scene's.
+    pub(super) lights: Vec<PathLight>,
+    /// BLAKE3 of the text, hexadecimal.
+    pub(super) hash: String,
+    /// File or name, for errors.
+    pub(super) place: String,
+}
+
+/// What moves, and how.
+#[derive(Clone, Debug)]
+pub(super) enum Kind {
+    Orbit(Orbit),
+    LightOrbit(LightOrbit),
+    Walk(Walk),
+}
+
+/// A light of the path's own.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PathLight {
+    pub position: Vec3,
+    pub colour: Vec3,
+    /// True if the position is in units of the bounds, 0 to 1 per axis.
+    pub relative: bool,
+}
+
+/// A point in units of the bounds, 0 to 1 per axis.
+pub(super) fn in_bounds(bounds: Aabb, relative: Vec3) -> Vec3 {
+    bounds.min + bounds.extent() * relative
+}
+
+impl CameraPath {
+    /// A path file if one of that name exists, otherwise the embedded path of that name.
+    ///
+    /// # Errors
+    /// [`Error::Input`] if there is neither, or the file cannot be used.
+    pub fn load(name_or_file: &str) -> Result<CameraPath> {
+        let path = Path::new(name_or_file);
+        if path.is_file() {
+            let text = std::fs::read_to_string(path).map_err(|e| {
+                Error::file(path, None, format!("cannot be read: {e}"), "it must be a text file in UTF-8")
+            })?;
+            let name = path.file_stem().unwrap_or_default().to_string_lossy();
+            return file::parse(&name, name_or_file, &text);
+        }
+        match EMBEDDED.iter().find(|(name, _)| *name == name_or_file) {
+            Some((name, text)) => file::parse(name, &format!("camera-paths/{name}.toml"), text),
+            None => {
+                let problem = "no file and no built-in camera path is called so";
+                Err(Error::argument(name_or_file, problem, did_you_mean(name_or_file, &names())))
+            }
+        }
+    }
+
+    /// The path that fits scene and ray configuration if the user names none: the scene's own; otherwise the thesis's
+    /// method for single objects (SPEC section 8), the camera's turn for P and the light's turn where there are shadows.
+    pub fn for_scene(scene: &Scene, config: Config) -> CameraPath {
+        let default = if config.shadows() { "light-orbit" } else { "orbit" };
+        let own = scene.camera_path.as_deref().and_then(|name| CameraPath::load(name).ok());
+        own.unwrap_or_else(|| CameraPath::load(default).expect("an embedded path is sound: a test loads each"))
+    }
+
+    /// BLAKE3 of the file's text, hexadecimal.
+    pub fn content_hash(&self) -> String {
+        self.hash.clone()
+    }
+
+    /// The frames of the path in this scene: all, or thinned evenly to `frames`, of which number i is the path's number
+    /// `round(i * all / frames)`; the first is always there.
+    ///
+    /// # Errors
+    /// [`Error::Input`] if there are fewer frames than wanted, or the path does not work in this scene.
+    pub fn views(&self, scene: &Scene, frames: Option<usize>) -> Result<Vec<View>> {
+        let wanted = frames.unwrap_or(self.frames);
+        if wanted == 0 || wanted > self.frames {
+            return Err(Error::argument(
+                &self.place,
+                format!("{wanted} frames wanted, but the path has {}", self.frames),
+                format!("take 1 to {} frames, or raise `frames` in the file", self.frames),
+            ));
+        }
+        let bounds = scene.bounds();
+        if bounds.diagonal() <= 0.0 || bounds.is_empty() {
+            let problem = format!("scene {} is a single point: no camera can look at it", scene.name);
+            return Err(Error::argument(&self.place, problem, "give a scene with an extent"));
+        }
+        let frame = |i: usize| (2 * i * self.frames + wanted) / (2 * wanted);
+        match &self.kind {
+            Kind::Orbit(orbit) => {
+                let fitted = orbit.fit(scene, bounds, self.up, self.field_of_view);
+                (0..wanted).map(|i| self.view(scene, bounds, frame(i), fitted.camera(self.share(frame(i))))).collect()
+            }
+            Kind::LightOrbit(orbit) => {
+                let camera = orbit.camera.fit(scene, bounds, self.up, self.field_of_view).camera(0.0);
+                let light = |i| vec![orbit.light(bounds, self.up, self.share(frame(i)))];
+                self.check_camera(frame(0), &camera)?;
+                Ok((0..wanted).map(|i| View { camera, lights: light(i) }).collect())
+            }
+            Kind::Walk(walk) => (0..wanted)
+                .map(|i| {
+                    // The last frame stands at the last key.
+                    let share = frame(i) as f32 / (self.frames - 1).max(1) as f32;
+                    let camera = walk.camera(bounds, self.up, self.field_of_view, share);
+                    self.view(scene, bounds, frame(i), camera)
+                })
+                .collect(),
+        }
+    }
+
+    /// The share of the turn at a frame: a full turn after the last.
+    fn share(&self, frame: usize) -> f32 {
+        frame as f32 / self.frames as f32
+    }
+
+    fn view(&self, scene: &Scene, bounds: Aabb, frame: usize, camera: Camera) -> Result<View> {
+        self.check_camera(frame, &camera)?;
+        Ok(View { camera, lights: self.lights_for(scene, bounds, &camera) })
+    }
+
+    /// The path's lights, or the scene's, or the default light: white, half the scene's radius above and a quarter to the
+    /// left of the camera, and moving with it, so that what is seen is lit.
+    fn lights_for(&self, scene: &Scene, bounds: Aabb, camera: &Camera) -> Vec<Light> {
+        if !self.lights.is_empty() {
+            let place = |l: &PathLight| if l.relative { in_bounds(bounds, l.position) } else { l.position };
+            return self.lights.iter().map(|l| Light::new(place(l), l.colour)).collect();
+        }
+        if !scene.lights.is_empty() {
+            return scene.lights.clone();
+        }
+        let radius = bounds.diagonal() * 0.5;
+        let right = camera.direction.cross(camera.up).normalize();
+        let up = right.cross(camera.direction);
+        vec![Light::new(camera.position + (up * 0.5 - right * 0.25) * radius, Vec3::ONE)]
+    }
+
+    /// Interpolation may bring a camera where it cannot look.
+    fn check_camera(&self, frame: usize, camera: &Camera) -> Result<()> {
+        let fault = |problem: &str, mend: &str| {
+            Err(Error::argument(&self.place, format!("frame {frame}: {problem}"), mend.to_owned()))
+        };
+        if !camera.position.is_finite() {
+            return fault("the camera's position is not finite", "bring the keys closer to the scene");
+        }
+        if !camera.direction.is_normalized() {
+            return fault("the camera has no direction", "move its target away from it, or add a key there");
+        }
+        if camera.direction.cross(camera.up).length() < 1e-3 * camera.up.length() || camera.up == Vec3::ZERO {
+            return fault("the camera looks along its up vector", "give the keys near it another `up`");
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,159 @@
+//! PLY files that are broken: one clear error each, and never a panic.
+
+use super::ply::{Encoded, encode};
+use super::{load_bytes, refusal};
+use proptest::prelude::*;
+
+/// A header, and a body of three vertices and a face; what each test breaks.
+const HEADER: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+    element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+const BODY: &str = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+
+#[test]
+fn each_fault_is_named_with_its_line_and_mend() {
+    let whole = format!("{HEADER}{BODY}");
+    load_bytes(whole.as_bytes()).unwrap();
+    // (what to replace, by what, words of the error)
+    let cases: &[(&str, &str, &[&str])] = &[
+        (&whole, "", &["mesh.ply: the file is empty"]),
+        (&whole, "solid cube\n", &["mesh.ply:1: not a PLY file"]),
+        (&whole, "ply", &["not a PLY file"]),
+        (&whole, "plyx\n", &["not a PLY file"]),
+        ("ascii", "asci", &[":2: PLY format `asci` is unknown", "binary_little_endian"]),
+        ("1.0", "2.0", &[":2: PLY version `2.0` is unknown"]),
+        ("format ascii 1.0\n", "", &["no `format` line"]),
+        ("end_header\n", "", &[":9: `0 0 0` is not a line of a PLY header", "end_header"]),
+        (&whole, &HEADER[..60], &["end_header"]),
+        (BODY, "", &["at least 18 bytes, but only 0 bytes are left", "truncated"]),
+        ("property float z\n", "", &[":3: the vertices have no coordinate `z`"]),
+        ("property float x", "property list uchar float x", &["no coordinate `x`"]),
+        ("property float y", "property float x", &[":5: a second property `x`"]),
+        ("property float y", "property real y", &[":5: type `real` is unknown", "double"]),
+        ("property float y", "property float", &[":5: not a property"]),
+        ("element vertex 3", "element vertices 3", &["no element `vertex`"]),
+        ("element vertex 3", "element vertex three", &[":3: `three` is not a number"]),
+        ("element vertex 3", "element vertex -3", &[":3: `-3` is not a number"]),
+        ("element vertex 3", "property int x\nelement vertex 3", &[":3: a property before the first element"]),
+        (
+            "element vertex 3",
+            "element vertex 1099511627776",
+            &[":3: 1099511627776 elements `vertex` need", "bytes are left"],
+        ),
+        ("element face 1", "element face 1099511627776", &[":7: 1099511627776 elements `face` need"]),
+        ("element face 1", "element face 18446744073709551615", &["elements `face` need"]),
+        ("element face 1", "element face 99999999999999999999", &["not a number"]),
+        ("element face 1", "element vertex 1", &[":7: a second element `vertex`"]),
+        (
+            "element face 1\nproperty list uchar int vertex_indices\n",
+            "",
+            &["no faces: a point cloud cannot be ray traced"],
+        ),
+        ("element face 1", "element face 0", &[":7: no faces: a point cloud"]),
+        ("element face 1", "element tristrips 1", &["no faces", "triangle strips"]),
+        ("vertex_indices", "corners", &[":7: the faces have no list `vertex_indices`"]),
+        ("list uchar int", "list uchar float", &["not a list of integers"]),
+        ("list uchar int", "list float int", &[":8: the count of list `vertex_indices` is not of an integer type"]),
+        ("list uchar int", "int", &["not a list of integers"]),
+        ("1 0 0\n", "1 nan 0\n", &[":11: vertex 1 lies at (1, NaN, 0), which is not finite"]),
+        ("1 0 0\n", "1 inf 0\n", &[":11: vertex 1", "not finite"]),
+        ("1 0 0\n", "1 1e39 0\n", &[":11: vertex 1", "not finite"]),
+        ("1 0 0\n", "1 zero 0\n", &[":11: vertex 1: `zero` is not a number"]),
+        ("1 0 0\n", "1 0\n", &[":11: vertex 1 has too few values"]),
+        ("1 0 0\n", "1 0 0 0\n", &[":11: vertex 1 has more values than declared: `0`"]),
+        ("3 0 1 2", "3 0 1 3", &[":13: face 0 uses vertex 3, but there are only 3 vertices (0 to 2)"]),
+        ("3 0 1 2", "3 0 1 -1", &[":13: face 0 uses vertex -1"]),
+        ("3 0 1 2", "3 0 1 4294967296", &[":13: face 0 uses vertex 4294967296"]),
+        ("3 0 1 2", "3 0 1 1.5", &[":13: face 0: `1.5` is not a whole number"]),
+        ("3 0 1 2", "-3 0 1 2", &[":13: face 0 has a list with a negative number"]),
+        ("3 0 1 2", "4 0 1 2", &[":13: face 0 has too few values"]),
+        ("3 0 1 2\n", "4 0 1 2", &["the file ends within face 0 of 1", "truncated"]),
+        ("3 0 1 2", "3 0 1 2 7", &[":13: face 0 has more values than declared: `7`"]),
+        ("3 0 1 2", "2 0 1", &["no face has three corners"]),
+        ("3 0 1 2", "3 0 1 é\u{7f}\u{85}", &["`é\\u{7f}\\u{85}` is not a whole number"]),
+    ];
+    for (from, to, words) in cases {
+        assert!(whole.contains(from), "{from}");
+        let message = refusal(load_bytes(whole.replacen(from, to, 1).as_bytes()));
+        for word in *words {
+            assert!(message.contains(word), "{from:?} -> {to:?}: {message}");
+        }
+    }
+}
+
+#[test]
+fn binary_faults_name_the_vertex_or_face() {
+    let points = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let sound = encode(&points, &[vec![0, 1, 2]]);
+    load_bytes(&sound.little).unwrap();
+    let cut = &sound.little[..sound.little.len() - 1];
+    assert!(refusal(load_bytes(cut)).contains("the file ends within face 0 of 1"));
+    let message = refusal(load_bytes(&encode(&points, &[vec![0, 1, 2], vec![0, 1, 7]]).big));
+    assert!(message.contains("face 1 uses vertex 7, but there are only 3 vertices"), "{message}");
+    let infinite = [[0.0; 3], [1.0, f32::INFINITY, 0.0], [0.0, 1.0, 0.0]];
+    let message = refusal(load_bytes(&encode(&infinite, &[vec![0, 1, 2]]).little));
+    assert!(message.contains("vertex 1 lies at (1, inf, 0), which is not finite"), "{message}");
+
+    // A list that claims 2^31 items, in a property that is passed over.
+    let text = "ply\nformat binary_big_endian 1.0\nelement junk 1\nproperty list uint double a\nelement vertex 3\n\
+        property float x\nproperty float y\nproperty float z\nelement face 1\n\
+        property list uchar int vertex_indices\nend_header\n";
+    let bytes = [text.as_bytes(), &[0x80, 0, 0, 0], &[0; 64]].concat();
+    assert!(refusal(load_bytes(&bytes)).contains("the file ends within junk 0"));
+}
+
+#[test]
+fn more_elements_than_indices_can_hold_are_refused() {
+    // Elements of one byte: the file is large enough for its counts, but there are too many vertices.
+    let header = "ply\nformat binary_little_endian 1.0\nelement vertex 134217729\nproperty char x\nproperty char y\n\
+        property char z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("large.ply");
+    let file = std::fs::File::create(&path).unwrap();
+    std::io::Write::write_all(&mut &file, header.as_bytes()).unwrap();
+    // Sparse: no disk is used, but reading takes the memory of the file.
+    file.set_len(header.len() as u64 + 3 * 134_217_729 + 13).unwrap();
+    let message = refusal(rtbench::scene::load(path.to_str().unwrap()));
+    assert!(message.contains("more than rtbench handles (134217728)"), "{message}");
+}
+
+/// A small valid mesh with every encoding's bytes.
+fn sample() -> Encoded {
+    let points: Vec<[f32; 3]> = (0..8).map(|i| [(i & 1) as f32, (i >> 1 & 1) as f32 * 1.5, (i >> 2) as f32]).collect();
+    encode(&points, &[vec![0, 1, 3, 2], vec![4, 6, 7, 5], vec![0, 4, 5], vec![1, 5, 7, 3], vec![2, 3, 7]])
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 1500, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Whatever is changed, cut or put in: a scene that keeps the invariants, or one error; no panic.
+    #[test]
+    fn mutated_files_never_panic(
+        encoding in 0..3usize,
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..4u8), 1..6),
+        cut in prop::option::of(any::<prop::sample::Index>()),
+    ) {
+        let sample = sample();
+        let mut bytes = [sample.ascii, sample.little, sample.big][encoding].clone();
+        for (index, value, kind) in changes {
+            let at = index.index(bytes.len());
+            match kind {
+                0 => bytes[at] = value,
+                1 => bytes.insert(at, value),
+                2 => { bytes.remove(at); }
+                // A digit more or less makes the most of headers and texts.
+                _ => bytes[at] = b"0123456789-+.e \n"[value as usize % 16],
+            }
+        }
+        if let Some(cut) = cut {
+            bytes.truncate(cut.index(bytes.len()));
+        }
+        let path = std::path::Path::new("mutated.ply");
+        if let Ok(mut scene) = rtbench::scene::ply::read_bytes(path, &bytes) {
+            scene.materials.push(rtbench::scene::Material::neutral());
+            // Coordinates may have become so large that the bounds are not finite, which `load` refuses.
+            if let Err(error) = scene.check() {
+                prop_assert!(error.to_string().contains("too large"), "{}", error);
+            }
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! Built-in scenes: sound, deterministic, as large as wanted, and of the character they claim.
+
+use rtbench::scene::{self, Scene, list};
+use std::collections::HashMap;
+
+fn load(what: &str) -> Scene {
+    scene::load(what).unwrap_or_else(|e| panic!("{e}"))
+}
+
+#[test]
+fn all_are_listed_with_range_and_default() {
+    let names: Vec<&str> = list().iter().map(|info| info.name).collect();
+    assert_eq!(names, ["scan", "terrain", "sphereflake", "stadium", "hall", "room"]);
+    for info in list() {
+        assert!(!info.character.is_empty());
+        for p in info.parameters {
+            assert!(p.min <= p.default && p.default <= p.max, "{}: {p:?}", info.name);
+        }
+    }
+}
+
+#[test]
+fn all_are_sound_and_the_same_twice() {
+    for info in list() {
+        let scene = load(info.name);
+        scene.check().unwrap();
+        assert_eq!(scene.name, info.name);
+        assert_eq!(scene.degenerate_triangles, 0, "{}", info.name);
+        assert!(!scene.lights.is_empty(), "{}", info.name);
+        assert!(scene.vertices.iter().all(|v| v.normal.is_normalized()), "{}", info.name);
+        assert_eq!(scene.content_hash(), load(info.name).content_hash(), "{}", info.name);
+    }
+}
+
+#[test]
+fn triangles_are_followed() {
+    let mut off = Vec::new();
+    for info in list() {
+        let p = info.parameters[0];
+        assert_eq!(p.name, "triangles");
+        for wanted in [p.min, p.min * 3, p.default, 300_000] {
+            let scene = load(&format!("{}:triangles={wanted}", info.name));
+            let ratio = scene.triangles.len() as f64 / wanted as f64;
+            if !(0.85..=1.1).contains(&ratio) {
+                off.push(format!("{}: {} of {wanted}", scene.name, scene.triangles.len()));
+            }
+            let name = if wanted == p.default { info.name.into() } else { format!("{}:triangles={wanted}", info.name) };
+            assert_eq!(scene.name, name);
+        }
+    }
+    assert!(off.is_empty(), "{off:?}");
+}
+
+/// Corner normals lie on the side to which the triangle's winding points; otherwise a surface is inside out.
+#[test]
+fn normals_agree_with_the_winding() {
+    for info in list() {
+        let scene = load(info.name);
+        let opposed = scene.triangles.iter().filter(|t| {
+            let [a, b, c] = t.vertices.map(|v| scene.vertices[v as usize]);
+            let face = (b.position - a.position).cross(c.position - a.position);
+            face.dot(a.normal + b.normal + c.normal) <= 0.0
+        });
+        let share = opposed.count() as f64 / scene.triangles.len() as f64;
+        assert!(share < 1e-3, "{}: {share}", info.name);
+    }
+}
+
+/// No triangle stands twice in the same place: that would flicker.
+#[test]
+fn no_triangle_is_there_twice() {
+    for info in list() {
+        let scene = load(info.name);
+        let mut seen = HashMap::new();
+        for (i, t) in scene.triangles.iter().enumerate() {
+            let mut corners = t.vertices.map(|v| scene.vertices[v as usize].position.to_array().map(f32::to_bits));
+            corners.sort();
+            if let Some(other) = seen.insert(corners, i) {
+                panic!("{}: triangles {other} and {i} coincide", info.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_scan_is_closed_and_even() {
+    for what in ["scan:triangles=5000", "scan", "scan:triangles=250000"] {
+        let scene = load(what);
+        let mut edges = HashMap::new();
+        for t in &scene.triangles {
+            let [a, b, c] = t.vertices;
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                *edges.entry((from, to)).or_insert(0) += 1;
+            }
+        }
+        // Every edge has its opposite exactly as often: no hole, no flipped face. (A net may touch itself at an edge.)
+        for (&(from, to), &count) in &edges {
+            assert_eq!(edges.get(&(to, from)), Some(&count), "{what}");
+        }
+        let mut areas: Vec<f32> = (0..scene.triangles.len() as u32)
+            .map(|i| {
+                let [a, b, c] = scene.corners(i);
+                (b - a).cross(c - a).length()
+            })
+            .collect();
+        areas.sort_by(f32::total_cmp);
+        let at = |share: f32| areas[(areas.len() as f32 * share) as usize];
+        assert!(at(0.95) / at(0.05) < 12.0, "{what}: {} {}", at(0.05), at(0.95));
+    }
+}
+
+#[test]
+fn characters_are_as_claimed() {
+    let hall = load("hall");
+    assert!(hall.lights.len() >= 3 && hall.mirror_share() > 0.15, "{}", hall.mirror_share());
+    assert_eq!(load("scan").mirror_share(), 0.0);
+    assert_eq!(load("scan").lights.len(), 1);
+
+    // Half of the stadium's triangles lie within a metre of a scene that is hundreds of metres wide.
+    let stadium = load("stadium");
+    let near = (0..stadium.triangles.len() as u32).filter(|&i| stadium.corners(i)[0].length() < 2.0).count();
+    assert!(near * 2 > stadium.triangles.len(), "{near} of {}", stadium.triangles.len());
+    assert!(stadium.bounds().extent().x > 200.0);
+
+    // Every eighth triangle of the room is at least twenty times as long as wide.
+    let room = load("room");
+    let thin = (0..room.triangles.len() as u32).filter(|&i| {
+        let [a, b, c] = room.corners(i);
+        let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+        longest * longest > 20.0 * (b - a).cross(c - a).length()
+    });
+    let thin = thin.count() as f64 / room.triangles.len() as f64;
+    assert!(thin > 0.02, "{thin}");
+
+    // The lights of enclosed scenes are inside, and so is everything else.
+    for scene in [&hall, &room] {
+        let bounds = scene.bounds();
+        for light in &scene.lights {
+            assert!(light.position.cmpgt(bounds.min).all() && light.position.cmplt(bounds.max).all());
+        }
+    }
+}
