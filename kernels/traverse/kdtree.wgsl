@@ -15,6 +15,7 @@ struct Descent {
     t_min: f32,
     t_max: f32,
     t_end: f32,        // where the ray leaves the tree, or its limit
+    t_restart: f32,    // where the last restart set out, -1 before the first one
     restart_node: u32,
     pushdown: bool,    // the ray has not branched yet: the restart node follows
     top: u32,          // entries ever pushed less those popped; modulo SHORT_STACK it is a place in the ring
@@ -26,7 +27,7 @@ fn start_descent(ray: Ray, limit: f32) -> Descent {
     let interval = ray_box(ray, structure.bounds_min, structure.bounds_max);
     let t_min = max(interval.x, 0.0);
     let t_end = min(interval.y, limit);
-    return Descent(0u, t_min, t_end, t_end, 0u, true, 0u, 0u, interval.x <= interval.y && t_min <= t_end);
+    return Descent(0u, t_min, t_end, t_end, -1.0, 0u, true, 0u, 0u, interval.x <= interval.y && t_min <= t_end);
 }
 
 fn slot(top: u32) -> u32 {
@@ -41,14 +42,16 @@ fn descend(ray: Ray, node: vec2<u32>, d: ptr<function, Descent>) {
     let inv = select(select(ray.inv_direction.z, ray.inv_direction.y, axis == 1u), ray.inv_direction.x, axis == 0u);
     let t_split = (split - origin) * inv;
     // Ordered along the ray. A plane behind the origin has t_split < 0 <= t_min: only the far side is left, which is
-    // the side of the origin, as in the thesis.
+    // the side of the origin, as in the thesis. A cell so thin that its ends round to one distance is visited all the
+    // same, as a triangle may lie in it alone; only a restart passes everything at its own distance, or it would
+    // find the leaf it came from for ever.
     let left = (*d).node + 1u;
     let right = node.y >> 2u;
     let near = select(left, right, inv < 0.0);
     let far = select(right, left, inv < 0.0);
-    if (t_split >= (*d).t_max) {
+    if (t_split > (*d).t_max) {
         (*d).node = near;
-    } else if (t_split <= (*d).t_min) {
+    } else if (t_split < (*d).t_min || t_split <= (*d).t_restart) {
         (*d).node = far;
     } else {
         let place = slot((*d).top);
@@ -83,6 +86,7 @@ fn leave_leaf(d: ptr<function, Descent>) -> bool {
     }
     count_restart();
     (*d).t_min = (*d).t_max;
+    (*d).t_restart = (*d).t_max;
     (*d).t_max = (*d).t_end;
     (*d).node = (*d).restart_node;
     return true;

@@ -19,7 +19,7 @@ pub fn random(seed: u32) -> impl FnMut() -> f32 {
 }
 
 /// Random triangles in the box from -1 to 1, some of them without area or twice the same. Flat ones lie in the planes
-/// of a lattice, many at exactly equal distances from a ray.
+/// of a lattice, many at exactly equal distances from a ray; some are off their plane by a few units in the last place.
 pub fn soup(triangles: usize, seed: u32, flat: bool) -> Scene {
     let mut random = random(seed);
     let mut scene = Scene { name: format!("soup-{triangles}-{seed}"), ..Scene::default() };
@@ -31,8 +31,9 @@ pub fn soup(triangles: usize, seed: u32, flat: bool) -> Scene {
         if flat {
             corners = corners.map(|p| (p * 4.0).round() / 4.0);
             let axis = index % 3;
-            corners[1][axis] = corners[0][axis];
-            corners[2][axis] = corners[0][axis];
+            let off = (index % 5) as i32 - 2;
+            let plane = corners[0][axis] + off as f32 * 6.0e-8;
+            corners.iter_mut().for_each(|corner| corner[axis] = plane);
         }
         if index % 29 == 7 {
             corners[2] = corners[1];

@@ -17,7 +17,7 @@ fn rays(count: usize, seed: u32) -> Vec<GivenRay> {
     (0..count)
         .map(|index| {
             let mut point = |scale: f32| Vec3::new(random(), random(), random()) * scale;
-            let (outside, inside, target) = (point(3.0), point(1.0), point(1.0));
+            let (outside, inside, target) = (point(if index % 2 == 0 { 3.0 } else { 30.0 }), point(1.0), point(1.0));
             let direction = (target - outside).normalize_or(Vec3::X);
             match index % 5 {
                 0 => GivenRay { origin: outside, direction },

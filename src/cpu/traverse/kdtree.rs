@@ -30,6 +30,8 @@ struct Descent {
     t_max: f32,
     /// Where the ray leaves the tree, or its limit.
     t_end: f32,
+    /// Where the last restart set out, -1 before the first one.
+    t_restart: f32,
     restart_node: u32,
     /// The ray has not branched yet: the restart node follows.
     pushdown: bool,
@@ -48,12 +50,14 @@ impl Descent {
         let inv = ray.inv_direction[axis];
         let t_split = (node.split() - ray.origin[axis]) * inv;
         // Ordered along the ray. A plane behind the origin has t_split < 0 <= t_min: only the far side is left, which
-        // is the side of the origin, as in the thesis.
+        // is the side of the origin, as in the thesis. A cell so thin that its ends round to one distance is visited
+        // all the same, as a triangle may lie in it alone; only a restart passes everything at its own distance, or it
+        // would find the leaf it came from for ever.
         let (left, right) = (self.node + 1, node.right());
         let (near, far) = if inv < 0.0 { (right, left) } else { (left, right) };
-        if t_split >= self.t_max {
+        if t_split > self.t_max {
             self.node = near;
-        } else if t_split <= self.t_min {
+        } else if t_split < self.t_min || t_split <= self.t_restart {
             self.node = far;
         } else {
             self.stack[self.top & (SHORT_STACK - 1)] = Entry { node: far, t_min: t_split, t_max: self.t_max };
@@ -84,6 +88,7 @@ impl Descent {
         }
         count.restart();
         self.t_min = self.t_max;
+        self.t_restart = self.t_max;
         self.t_max = self.t_end;
         self.node = self.restart_node;
         true
@@ -101,6 +106,7 @@ impl KdTree<'_> {
             t_min,
             t_max: t_end,
             t_end,
+            t_restart: -1.0,
             restart_node: 0,
             pushdown: true,
             top: 0,
