@@ -223,8 +223,13 @@ pub trait Prepared {
     ) -> Result<()>;
 
     /// One pass over a path by the timed kernel: the time of each frame. Nothing is read back in between.
-    fn time_path(&mut self, config: Config, views: &[View], size: Size, interrupted: Interrupted)
-    -> Result<Vec<FrameTime>>;
+    fn time_path(
+        &mut self,
+        config: Config,
+        views: &[View],
+        size: Size,
+        interrupted: Interrupted,
+    ) -> Result<Vec<FrameTime>>;
 
     /// Traces given rays: the nearest hit, or with `any_hit` whether anything is hit at all (`triangle` is 0 then, and
     /// `t` is 0).

@@ -61,12 +61,7 @@ impl fmt::Display for Input {
 impl Error {
     /// A problem with a file: `line` counts from 1.
     pub fn file(path: &Path, line: Option<usize>, problem: impl Into<String>, mend: impl Into<String>) -> Self {
-        Error::Input(Input {
-            place: path.display().to_string(),
-            line,
-            problem: problem.into(),
-            mend: mend.into(),
-        })
+        Error::Input(Input { place: path.display().to_string(), line, problem: problem.into(), mend: mend.into() })
     }
 
     /// A problem with an argument; `place` is the flag or the argument's name.

@@ -86,7 +86,12 @@ macro_rules! same_layout {
 #[test]
 fn struct_layouts_agree() {
     let render = |traversal, counting| {
-        let kernel = Kernel { entry: Entry::Render { config: Config::PSR, counting }, traversal, stack_size: 32, software: false };
+        let kernel = Kernel {
+            entry: Entry::Render { config: Config::PSR, counting },
+            traversal,
+            stack_size: 32,
+            software: false,
+        };
         check(&assemble(&kernel)).unwrap()
     };
     let module = &render(Traversal::Grid, true);
@@ -134,7 +139,8 @@ fn struct_layouts_agree() {
         offsets,
         [offset_of!(BvhNode, min), offset_of!(BvhNode, first), offset_of!(BvhNode, max), offset_of!(BvhNode, count)]
     );
-    let kernel = Kernel { entry: Entry::Trace { any_hit: false }, traversal: Traversal::Brute, stack_size: 8, software: false };
+    let kernel =
+        Kernel { entry: Entry::Trace { any_hit: false }, traversal: Traversal::Brute, stack_size: 8, software: false };
     let module = &check(&assemble(&kernel)).unwrap();
     same_layout!(module, "GivenRay", TraceRay, [origin, direction]);
 }
