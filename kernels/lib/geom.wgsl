@@ -50,6 +50,16 @@ fn ray_along(origin: vec3<f32>, direction: vec3<f32>) -> Ray {
 fn ray_box(ray: Ray, lo: vec3<f32>, hi: vec3<f32>) -> vec2<f32> {
     let a = (lo - ray.origin) * ray.inv_direction;
     let b = (hi - ray.origin) * ray.inv_direction;
+    if (SOFTWARE) {
+        // The same without min and max, which cost a software driver three instructions each (one of them for NaN,
+        // of which there is none here) where a comparison serves two selections
+        let ascending = a < b;
+        let near = select(b, a, ascending);
+        let far = select(a, b, ascending);
+        let near_xy = select(near.y, near.x, near.x > near.y);
+        let far_xy = select(far.y, far.x, far.x < far.y);
+        return vec2<f32>(select(near_xy, near.z, near.z > near_xy), select(far_xy, far.z, far.z < far_xy));
+    }
     let near = min(a, b);
     let far = max(a, b);
     return vec2<f32>(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));

@@ -43,19 +43,20 @@ struct Octant {
 // The nearest hit so far. Of equal distances the lower triangle index wins, so that the order of tests is no matter.
 struct Best {
     t: f32,
-    triangle: u32,
     record: u32,
 }
 
 fn no_best() -> Best {
-    return Best(T_MAX, MISS, MISS);
+    return Best(T_MAX, MISS);
 }
 
 fn test_record(ray: Ray, record: u32, best: ptr<function, Best>) {
-    let r = records[record];
+    let r = records[record].xyz;
     let hit = intersect(ray, vertices[r.x].position.xyz, vertices[r.y].position.xyz, vertices[r.z].position.xyz);
-    if (hit.t < (*best).t || (hit.t == (*best).t && r.w < (*best).triangle)) {
-        *best = Best(hit.t, r.w, record);
+    if (hit.t <= (*best).t) {
+        if (hit.t < (*best).t || records[record].w < records[(*best).record].w) {
+            *best = Best(hit.t, record);
+        }
     }
 }
 

@@ -65,7 +65,7 @@ fn pop() {
 fn start_packet() -> u32 {
     if (lane == 0u) {
         stack_depth = 0u;
-        next = vec2<u32>(root_reference(), 0u);
+        next = vec2<u32>(nodes[0].reference, 0u);
     }
     return workgroupUniformLoad(&next).x;
 }
@@ -83,7 +83,7 @@ fn visit_inner(ray: Ray, node: u32, t: f32, alive: bool) -> u32 {
     atomicAdd(&tally, wish(l, r, wanted(l, t) && alive, wanted(r, t) && alive));
     workgroupBarrier();
     if (lane == 0u) {
-        choose(node_reference(left.first, left.count), node_reference(right.first, right.count));
+        choose(left.reference, right.reference);
     }
     return announce(alive);
 }

@@ -34,6 +34,14 @@ impl BvhNode {
         Aabb { min: self.min.into(), max: self.max.into() }
     }
 
+    /// What the node leads to in one word, as traversals and their stacks hold it (`kernels/lib/bvh.wgsl`): the left child
+    /// of an inner node; of a leaf the top bit, four bits of count and 27 bits of first record. The root of an empty
+    /// scene is a leaf without records.
+    #[inline(always)]
+    pub fn reference(&self) -> u32 {
+        if self.count > 0 || self.first == 0 { 1 << 31 | self.count << 27 | self.first } else { self.first }
+    }
+
     /// Both corners, loaded as 16-byte rows (see [`crate::math::Ray`] on the hidden fourth lane).
     #[inline(always)]
     pub fn corners(&self) -> (Vec3A, Vec3A) {

@@ -36,14 +36,13 @@ impl Axis {
     /// How many planes lie at or below `x`: the bin in which a box that begins at `x` begins.
     #[inline(always)]
     fn bin(&self, x: f32, guess: u32) -> usize {
-        let mut bin = guess as usize % MAX_BINS;
-        while self.planes[bin + 1] <= x && bin + 1 < self.bins {
-            bin += 1;
-        }
-        while self.planes[bin] > x {
-            bin -= 1;
-        }
-        bin
+        let bin = guess as usize % MAX_BINS;
+        if self.planes[bin] <= x && x < self.planes[bin + 1] { bin } else { self.mend(x) }
+    }
+
+    #[cold]
+    fn mend(&self, x: f32) -> usize {
+        self.planes[1..self.bins].partition_point(|&plane| plane <= x)
     }
 }
 
@@ -106,7 +105,9 @@ pub(super) fn find(prims: &[Prim], cell: &Aabb, bins: usize) -> Option<Split> {
                 let end = top - usize::from(axis.planes[top] == prim.max[a]);
                 counts.begin[begin] += 1;
                 counts.end[end] += 1;
-                counts.planar[begin] += u32::from(end < begin);
+                if end < begin {
+                    counts.planar[begin] += 1;
+                }
             }
         }
         counts
@@ -135,9 +136,38 @@ fn sweep(a: usize, axis: &Axis, counts: &Counts, triangles: usize, cell: &Aabb, 
     }
 }
 
+/// For sweeps in f32. The left side's share of a cell's area is `at_min + per_length * (plane - min)`; both shares
+/// together make `sum`, which is more than 1 since the plane itself counts twice.
+pub(super) struct Shares {
+    pub min: f32,
+    pub max: f32,
+    at_min: f32,
+    per_length: f32,
+    sum: f32,
+}
+
+impl Shares {
+    /// `None` if no plane fits into the cell, or shares leave the range of f32.
+    #[inline(always)]
+    pub fn new(cell: &Aabb, axis: usize) -> Option<Shares> {
+        let Sides { min, max, section, rim, .. } = Sides::new(cell, axis);
+        let per_area = 1.0 / (section + rim * (f64::from(max) - f64::from(min)));
+        let (at_min, per_length) = ((section * per_area) as f32, (rim * per_area) as f32);
+        // An area of zero makes one of these infinite or NaN.
+        let usable = max > min && (max - min + per_length + at_min).is_finite();
+        usable.then_some(Shares { min, max, at_min, per_length, sum: 1.0 + at_min })
+    }
+
+    /// Expected number of tests: with the share `p` on the left, `p left + (sum - p) right`.
+    #[inline(always)]
+    pub fn cost(&self, plane: f32, right: f32, left_minus_right: f32) -> f32 {
+        self.sum * right + (self.at_min + self.per_length * (plane - self.min)) * left_minus_right
+    }
+}
+
 /// The areas of both sides of a plane, as functions of its coordinate.
 pub(super) struct Sides {
-    pub axis: usize,
+    axis: usize,
     min: f32,
     max: f32,
     /// Area of the plane's section of the cell.
@@ -153,21 +183,14 @@ impl Sides {
         Sides { axis, min: cell.min[axis], max: cell.max[axis], section: u * v, rim: u + v }
     }
 
-    /// Half areas on the left and on the right of a plane.
-    #[inline(always)]
-    pub fn areas(&self, plane: f32) -> (f64, f64) {
-        let left = self.section + self.rim * (f64::from(plane) - f64::from(self.min));
-        let right = self.section + self.rim * (f64::from(self.max) - f64::from(plane));
-        (left, right)
-    }
-
     /// Takes the plane if it is cheaper than the best so far; never one on the border of the cell.
     #[inline(always)]
     pub fn offer(&self, plane: f32, left: usize, planar: usize, right: usize, best: &mut Option<Split>) {
         if !(plane > self.min && plane < self.max) {
             return;
         }
-        let (left_area, right_area) = self.areas(plane);
+        let left_area = self.section + self.rim * (f64::from(plane) - f64::from(self.min));
+        let right_area = self.section + self.rim * (f64::from(self.max) - f64::from(plane));
         let planar_left = left_area <= right_area;
         let (left, right) = if planar_left { (left + planar, right) } else { (left, right + planar) };
         let weighted = left_area * left as f64 + right_area * right as f64;

@@ -73,11 +73,10 @@ impl Builder {
         depth >= self.max_depth || cost.leaf(triangles as u32) <= cost.traversal || self.is_broke()
     }
 
-    /// True if splitting a cell is cheaper than testing its triangles.
-    pub fn pays(&self, cell: &Aabb, triangles: usize, split: &Split) -> bool {
+    /// True if a split is cheaper than testing the cell's triangles; `tests` are expected behind it.
+    pub fn pays(&self, triangles: usize, tests: f64) -> bool {
         let cost = &self.config.cost;
-        let area = half_area(cell);
-        area > 0.0 && cost.traversal + cost.intersection * split.weighted / area < cost.leaf(triangles as u32)
+        cost.traversal + cost.intersection * tests < cost.leaf(triangles as u32)
     }
 
     /// Accounts for a leaf.
@@ -97,7 +96,8 @@ impl Builder {
         let split = if self.must_stop(count, depth) {
             None
         } else {
-            kdtree_bins::find(&prims, &cell, self.config.bins).filter(|split| self.pays(&cell, count, split))
+            kdtree_bins::find(&prims, &cell, self.config.bins)
+                .filter(|split| self.pays(count, split.weighted / half_area(&cell)))
         };
         let Some(split) = split else {
             self.spend(count);
@@ -105,7 +105,7 @@ impl Builder {
         };
         let (left, right) = divide(&prims, &split);
         drop(prims);
-        let (left_cell, right_cell) = halves(&cell, &split);
+        let (left_cell, right_cell) = halves(&cell, split.axis, split.plane);
         let a = || self.grow(left, left_cell, depth + 1);
         let b = || self.grow(right, right_cell, depth + 1);
         let parts = if split.left + split.right > TASK { rayon::join(a, b) } else { (a(), b()) };
@@ -133,10 +133,10 @@ fn divide(prims: &[Prim], split: &Split) -> (Vec<Prim>, Vec<Prim>) {
 }
 
 /// The cells on both sides of a plane.
-pub(super) fn halves(cell: &Aabb, split: &Split) -> (Aabb, Aabb) {
+pub(super) fn halves(cell: &Aabb, axis: usize, plane: f32) -> (Aabb, Aabb) {
     let (mut left, mut right) = (*cell, *cell);
-    left.max[split.axis] = split.plane;
-    right.min[split.axis] = split.plane;
+    left.max[axis] = plane;
+    right.min[axis] = plane;
     (left, right)
 }
 

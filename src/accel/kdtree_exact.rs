@@ -5,15 +5,13 @@
 //! into the children, which keeps their order.
 
 use super::kdtree::KdNode;
-use super::kdtree_bins::Sides;
-use super::kdtree_build::{Builder, Split, Subtree, halves};
+use super::kdtree_bins::Shares;
+use super::kdtree_build::{Builder, Subtree, halves};
 use super::prims::Prim;
 use crate::math::Aabb;
-use std::ops::Range;
 
-/// A triangle's box begins, lies or ends in a plane. Sorts by coordinate, then in the order in which a sweep needs them.
-///
-/// `coordinate (ordered bits) << 32 | kind << 30 | number of the triangle in this subtree`.
+/// A triangle's box begins, lies or ends in a plane: `coordinate (bits) << 32 | kind << 30 | number of the triangle in
+/// this subtree`.
 type Event = u64;
 
 const END: u32 = 0;
@@ -21,26 +19,35 @@ const PLANAR: u32 = 1;
 const START: u32 = 2;
 
 fn event(x: f32, kind: u32, local: u32) -> Event {
-    u64::from(ordered(x)) << 32 | u64::from(kind << 30 | local)
+    u64::from(x.to_bits()) << 32 | u64::from(kind << 30 | local)
 }
 
-/// Bits that compare as the float does.
-fn ordered(x: f32) -> u32 {
-    let bits = x.to_bits();
-    if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
+/// By coordinate, then in the order in which a sweep needs them.
+fn order(event: &Event) -> u64 {
+    // Bits that compare as the float does: all of a negative one flipped, the sign of a positive one.
+    let flip = ((*event as i64) >> 63) as u64 >> 32 << 32;
+    event ^ (flip | 1 << 63)
 }
 
+#[inline(always)]
 fn coordinate(event: Event) -> f32 {
-    let bits = (event >> 32) as u32;
-    f32::from_bits(if bits >> 31 == 1 { bits & !(1 << 31) } else { !bits })
+    f32::from_bits((event >> 32) as u32)
 }
 
+#[inline(always)]
 fn kind(event: Event) -> u32 {
     (event as u32) >> 30
 }
 
+#[inline(always)]
 fn local(event: Event) -> usize {
     (event as u32 & 0x3fff_ffff) as usize
+}
+
+/// 1 where a triangle begins or lies, 0 where it ends.
+#[inline(always)]
+fn begun(event: Event) -> u32 {
+    (event >> 31 | event >> 30) as u32 & 1
 }
 
 /// Sides that a triangle goes to, as bits.
@@ -54,247 +61,322 @@ pub(super) fn build(builder: &Builder, prims: &[Prim], cell: Aabb, depth: u32) -
         prims,
         locals: (0..prims.len() as u32).collect(),
         events: Default::default(),
-        side: vec![0; prims.len()],
-        local_scratch: Vec::new(),
-        event_scratch: Vec::new(),
+        any_planar: [false; 3],
+        side: vec![LEFT | RIGHT; prims.len()],
         out: Subtree::default(),
     };
+    let locals = Span::new(0, prims.len());
+    let mut root = Node { cell, depth, locals, events: [locals; 3], begun: [0; 3], top: [locals.to; 4] };
     for axis in 0..3 {
-        let inside = cell.min[axis]..cell.max[axis];
-        let events = &mut sweep.events[axis];
-        events.reserve(2 * prims.len());
-        for (local, prim) in prims.iter().enumerate() {
-            let (min, max, local) = (prim.min[axis], prim.max[axis], local as u32);
-            if min == max {
-                events.push(event(min, PLANAR, local));
-                continue;
-            }
-            // Events on or outside the cell's border are never candidates, and the counts know them without: a
-            // triangle that has not begun inside has begun before, one that has not ended inside never ends.
-            if min > inside.start {
-                events.push(event(min, START, local));
-            }
-            if max < inside.end {
-                events.push(event(max, END, local));
-            }
-        }
-        events.sort_unstable();
+        let events = sweep.first_events(axis, &cell);
+        root.events[axis] = Span::new(0, events.len());
+        root.begun[axis] = events.iter().map(|&e| begun(e)).sum();
+        root.top[axis] = root.events[axis].to;
+        sweep.events[axis] = events;
     }
-    let depth_below = sweep.grow(Node { locals: 0, events: [0; 3], cell, depth });
-    sweep.out.depth = depth_below;
+    sweep.out.depth = sweep.grow(&root);
     sweep.out
 }
 
-/// A cell to be split. Its triangles and events are the tops of the stacks, from these positions on.
+/// Part of a list. 32 bits: nodes are copied all the time.
+#[derive(Clone, Copy)]
+struct Span {
+    from: u32,
+    to: u32,
+}
+
+impl Span {
+    fn new(from: usize, to: usize) -> Span {
+        Span { from: from as u32, to: to as u32 }
+    }
+
+    fn len(self) -> usize {
+        (self.to - self.from) as usize
+    }
+
+    fn of<T>(self, list: &[T]) -> &[T] {
+        &list[self.from as usize..self.to as usize]
+    }
+}
+
+/// A cell to be split.
+#[derive(Clone, Copy)]
 struct Node {
-    locals: usize,
-    events: [usize; 3],
     cell: Aabb,
     depth: u32,
+    /// Its triangles.
+    locals: Span,
+    /// Its events by axis: those strictly inside the cell, and all of planar triangles.
+    events: [Span; 3],
+    /// How many of the events are no ends.
+    begun: [u32; 3],
+    /// Where free space begins in the three lists of events and in that of triangles.
+    top: [u32; 4],
+}
+
+/// Triangles' numbers stand in `top[LOCALS]`.
+const LOCALS: usize = 3;
+
+/// A plane that pays.
+struct Cut {
+    axis: usize,
+    plane: f32,
+    /// Side of the triangles that lie in the plane.
+    planar_left: bool,
+    /// The events of the axis that lie in the plane.
+    here: Span,
 }
 
 struct Sweep<'a> {
     builder: &'a Builder,
     prims: &'a [Prim],
-    /// Stack of triangle lists (numbers in `prims`, ascending).
+    /// Lists of triangles (numbers in `prims`, ascending), used like a stack: children's lists lie above their parent's.
     locals: Vec<u32>,
-    /// Stacks of event lists: those strictly inside the cell, and all of planar triangles.
+    /// Lists of events, likewise.
     events: [Vec<Event>; 3],
-    /// Where a triangle goes, while its node is being split.
+    /// Axes with triangles that lie in a plane.
+    any_planar: [bool; 3],
+    /// Where a triangle goes while its node is being split; to both sides at all other times.
     side: Vec<u8>,
-    local_scratch: Vec<u32>,
-    event_scratch: Vec<Event>,
     out: Subtree,
 }
 
 impl Sweep<'_> {
-    /// Builds the subtree of the topmost node and takes its lists off the stacks; returns its depth.
-    fn grow(&mut self, node: Node) -> u32 {
-        let count = self.locals.len() - node.locals;
-        let split = if self.builder.must_stop(count, node.depth) {
-            None
-        } else {
-            self.find(&node).filter(|split| self.builder.pays(&node.cell, count, split))
-        };
-        let depth = match split {
-            None => {
-                self.leaf(&node);
-                0
+    /// The events of all triangles on an axis, in order.
+    ///
+    /// Those on or outside the cell's border are never candidates, and the counts know them without: a triangle that
+    /// does not begin inside has begun before, one that does not end inside never ends.
+    fn first_events(&mut self, axis: usize, cell: &Aabb) -> Vec<Event> {
+        let mut events = Vec::with_capacity(2 * self.prims.len());
+        for (local, prim) in self.prims.iter().enumerate() {
+            let (min, max, local) = (prim.min[axis], prim.max[axis], local as u32);
+            if min == max {
+                events.push(event(min, PLANAR, local));
+                self.any_planar[axis] = true;
+                continue;
             }
-            Some(split) => {
-                let index = self.out.nodes.len();
-                self.out.nodes.push(KdNode::leaf(0, 0));
-                let (left, right) = self.divide(&node, &split);
-                let left_depth = self.grow(left);
-                let right_index = self.out.nodes.len() as u32;
-                let right_depth = self.grow(right);
-                self.out.nodes[index] = KdNode::inner(split.axis as u32, split.plane, right_index);
-                1 + left_depth.max(right_depth)
+            if min > cell.min[axis] {
+                events.push(event(min, START, local));
             }
-        };
-        self.locals.truncate(node.locals);
-        for axis in 0..3 {
-            self.events[axis].truncate(node.events[axis]);
+            if max < cell.max[axis] {
+                events.push(event(max, END, local));
+            }
         }
-        depth
+        events.sort_unstable_by_key(order);
+        events
+    }
+
+    /// Builds the subtree of a node; returns its depth.
+    fn grow(&mut self, node: &Node) -> u32 {
+        let stop = self.builder.must_stop(node.locals.len(), node.depth);
+        let Some(cut) = (if stop { None } else { self.find(node) }) else {
+            self.leaf(node);
+            return 0;
+        };
+        let index = self.out.nodes.len();
+        self.out.nodes.push(KdNode::leaf(0, 0));
+        let [left, right] = self.divide(node, &cut);
+        let left_depth = self.grow(&left);
+        let right_index = self.out.nodes.len() as u32;
+        let right_depth = self.grow(&right);
+        self.out.nodes[index] = KdNode::inner(cut.axis as u32, cut.plane, right_index);
+        1 + left_depth.max(right_depth)
     }
 
     fn leaf(&mut self, node: &Node) {
-        let locals = &self.locals[node.locals..];
+        let locals = node.locals.of(&self.locals);
         self.builder.spend(locals.len());
         self.out.nodes.push(KdNode::leaf(self.out.triangles.len() as u32, locals.len() as u32));
         self.out.triangles.extend(locals.iter().map(|&l| self.prims[l as usize].triangle()));
     }
 
-    /// Sweeps all three axes for the cheapest plane.
-    fn find(&self, node: &Node) -> Option<Split> {
-        let count = self.locals.len() - node.locals;
-        let mut best = None;
+    /// Sweeps all three axes for the cheapest plane; `None` if it does not pay.
+    fn find(&self, node: &Node) -> Option<Cut> {
+        let count = node.locals.len();
+        let (mut cheapest, mut axis, mut planar_left) = (u64::MAX, 0, true);
+        for a in 0..3 {
+            let Some(shares) = Shares::new(&node.cell, a) else { continue };
+            let events = node.events[a].of(&self.events[a]);
+            let (found, left) = if self.any_planar[a] && events.iter().any(|&e| kind(e) == PLANAR) {
+                sweep_with_planar(events, &shares, count, node.begun[a])
+            } else {
+                (sweep(events, &shares, count, node.begun[a]), true)
+            };
+            if found < cheapest {
+                (cheapest, axis, planar_left) = (found, a, left);
+            }
+        }
+        let cost = f32::from_bits((cheapest >> 32) as u32);
+        if cheapest == u64::MAX || !self.builder.pays(count, f64::from(cost)) {
+            return None;
+        }
+        let events = node.events[axis].of(&self.events[axis]);
+        let at = cheapest as u32 as usize;
+        let plane = coordinate(events[at]);
+        let before = events[..at].iter().rev().take_while(|&&e| coordinate(e) == plane).count();
+        let after = events[at..].iter().take_while(|&&e| coordinate(e) == plane).count();
+        let first = node.events[axis].from as usize + at;
+        Some(Cut { axis, plane, planar_left, here: Span::new(first - before, first + after) })
+    }
+
+    /// Makes the children's lists; returns the left and the right child.
+    fn divide(&mut self, node: &Node, cut: &Cut) -> [Node; 2] {
+        let begun_sides = self.classify(node, cut);
+        let (left_cell, right_cell) = halves(&node.cell, cut.axis, cut.plane);
+        let child = |cell| Node { cell, depth: node.depth + 1, ..*node };
+        let (mut left, mut right) = (child(left_cell), child(right_cell));
         for axis in 0..3 {
-            let events = &self.events[axis][node.events[axis]..];
-            let sides = Sides::new(&node.cell, axis);
-            let begun_inside = events.iter().filter(|&&e| kind(e) != END).count();
-            let planar = events.iter().filter(|&&e| kind(e) == PLANAR).count();
-            let begun_before = count - begun_inside;
-            if planar == 0 {
-                sweep(events, &sides, begun_before, count, &mut best);
-            } else {
-                sweep_with_planar(events, &sides, begun_before, count, &mut best);
+            if axis == cut.axis {
+                [left.begun[axis], right.begun[axis]] = begun_sides;
+                self.part(cut, node, &mut left, &mut right);
+                continue;
             }
+            let side = &self.side;
+            let mut begun_sides = [0; 2];
+            let [a, b] = fork(&mut self.events[axis], node.events[axis], node.top[axis], |e| {
+                let side = side[local(e)];
+                begun_sides[0] += begun(e) & u32::from(side);
+                begun_sides[1] += begun(e) & u32::from(side >> 1);
+                side
+            });
+            [left.begun[axis], right.begun[axis]] = begun_sides;
+            (left.events[axis], right.events[axis]) = (a, b);
+            (left.top[axis], right.top[axis]) = (a.to, b.to);
         }
-        best
+        let side = &mut self.side;
+        let both = |l: u32| std::mem::replace(&mut side[l as usize], LEFT | RIGHT);
+        [left.locals, right.locals] = fork(&mut self.locals, node.locals, node.top[LOCALS], both);
+        (left.top[LOCALS], right.top[LOCALS]) = (left.locals.to, right.locals.to);
+        [left, right]
     }
 
-    /// Puts the children's lists on the stacks, the left one on top.
-    fn divide(&mut self, node: &Node, split: &Split) -> (Node, Node) {
-        let own = &self.events[split.axis][node.events[split.axis]..];
-        let plane = u64::from(ordered(split.plane));
-        let below = own.partition_point(|&e| e >> 32 < plane);
-        let here = below + own[below..].partition_point(|&e| e >> 32 == plane);
-        self.classify(node, split, below, here);
-
-        let right_locals = self.locals.len();
-        let side = &self.side;
-        fork(&mut self.locals, node.locals, &mut self.local_scratch, |l| side[l as usize]);
-        let left_locals = right_locals + split.right;
-        debug_assert_eq!(self.locals.len(), left_locals + split.left);
-
-        let right_events = [0, 1, 2].map(|a| self.events[a].len());
-        let left_events = [0, 1, 2].map(|axis| {
-            let own = node.events[axis];
-            if axis == split.axis {
-                Self::cut(&mut self.events[axis], own, split, own + below..own + here)
-            } else {
-                fork(&mut self.events[axis], own, &mut self.event_scratch, |e| side[local(e)])
-            }
-        });
-        let (left_cell, right_cell) = halves(&node.cell, split);
-        (
-            Node { locals: left_locals, events: left_events, cell: left_cell, depth: node.depth + 1 },
-            Node { locals: right_locals, events: right_events, cell: right_cell, depth: node.depth + 1 },
-        )
-    }
-
-    /// Decides where every triangle of the node goes: to both sides unless an event says otherwise. The node's events
-    /// on the split axis lie below, in (`below..here`), and above the plane.
-    fn classify(&mut self, node: &Node, split: &Split, below: usize, here: usize) {
-        for &l in &self.locals[node.locals..] {
-            self.side[l as usize] = LEFT | RIGHT;
-        }
-        let own = &self.events[split.axis][node.events[split.axis]..];
+    /// Decides where every triangle of the node goes: to both sides unless an event says otherwise. Returns how many
+    /// events below and how many above the plane are no ends.
+    fn classify(&mut self, node: &Node, cut: &Cut) -> [u32; 2] {
+        let events = &self.events[cut.axis];
+        let below = Span { to: cut.here.from, ..node.events[cut.axis] };
+        let above = Span { from: cut.here.to, ..node.events[cut.axis] };
+        let mut begun_sides = [0; 2];
         // What has ended below does not reach the right; what begins above does not reach the left.
-        for &e in &own[..below] {
-            self.side[local(e)] &= LEFT | if kind(e) == START { RIGHT } else { 0 };
+        for &e in below.of(events) {
+            begun_sides[0] += begun(e);
+            self.side[local(e)] &= LEFT | (((e as u32) >> 31 << 1) as u8);
         }
-        for &e in &own[here..] {
-            self.side[local(e)] &= RIGHT | if kind(e) == END { LEFT } else { 0 };
+        for &e in above.of(events) {
+            begun_sides[1] += begun(e);
+            self.side[local(e)] &= RIGHT | (1 - begun(e)) as u8;
         }
-        for &e in &own[below..here] {
-            let left = kind(e) == END || (kind(e) == PLANAR && split.planar_left);
+        for &e in cut.here.of(events) {
+            let left = kind(e) == END || (kind(e) == PLANAR && cut.planar_left);
             self.side[local(e)] = if left { LEFT } else { RIGHT };
         }
+        begun_sides
     }
 
-    /// Events of the split axis: those below the plane go left, those above go right, and those in the plane (`here`)
-    /// are on the border now, where only planar triangles are remembered. Returns where the left list begins.
-    fn cut(events: &mut Vec<Event>, own: usize, split: &Split, here: Range<usize>) -> usize {
-        let end = events.len();
-        let planar_from = here.start + events[here.clone()].partition_point(|&e| kind(e) < PLANAR);
-        let planar_to = here.start + events[here.clone()].partition_point(|&e| kind(e) <= PLANAR);
-        if !split.planar_left {
-            events.extend_from_within(planar_from..planar_to);
+    /// The children's events on the split axis are parts of their parent's list: those below and those above the plane.
+    /// What lies in the plane is on the border now, where only planar triangles are remembered.
+    fn part(&mut self, cut: &Cut, node: &Node, left: &mut Node, right: &mut Node) {
+        let axis = cut.axis;
+        left.events[axis].to = cut.here.from;
+        right.events[axis].from = cut.here.to;
+        if !self.any_planar[axis] {
+            return;
         }
-        events.extend_from_within(here.end..end);
-        let left = events.len();
-        events.extend_from_within(own..here.start);
-        if split.planar_left {
-            events.extend_from_within(planar_from..planar_to);
+        let events = &mut self.events[axis];
+        let planar: Vec<Event> = cut.here.of(events).iter().copied().filter(|&e| kind(e) == PLANAR).collect();
+        if planar.is_empty() {
+            return;
         }
-        left
+        let (child, list) = if cut.planar_left {
+            let list = [left.events[axis].of(events), &planar].concat();
+            (&mut *left, list)
+        } else {
+            let list = [&planar, right.events[axis].of(events)].concat();
+            (&mut *right, list)
+        };
+        let top = node.top[axis] as usize;
+        child.begun[axis] += planar.len() as u32;
+        child.events[axis] = Span::new(top, top + list.len());
+        events.truncate(top);
+        events.extend(list);
+        (left.top[axis], right.top[axis]) = (events.len() as u32, events.len() as u32);
     }
 }
 
-/// The sweep where no triangle lies in a plane of its axis: every event is a candidate by itself.
+/// The sweep where no triangle lies in a plane of its axis: every event is a candidate by itself. Returns the lowest cost
+/// (bits of an f32) and, below it, the event that has it.
 ///
 /// Of several events in one plane, all but the last end and the first start see too many triangles on one side, and so
-/// cost more than the plane does; they need no care.
+/// cost more than the plane does; they need no care. With the share `p` of the cell's area on the left and `s - p` on
+/// the right (`s` is constant), the cost is `p left + (s - p) right = s right + p (left - right)`, and `left - right`
+/// grows by one with every event. Most lists are so short that a mispredicted branch costs more than an event: there is
+/// none but the loop's.
 #[inline(always)]
-fn sweep(events: &[Event], sides: &Sides, begun_before: usize, count: usize, best: &mut Option<Split>) {
-    let (mut left, mut right) = (begun_before as f64, count as f64);
-    let mut cheapest = (best.map_or(f64::INFINITY, |b| b.weighted), 0.0, 0.0, 0);
-    for &e in events {
-        let start = (e >> 31 & 1) as f64;
-        right -= 1.0 - start;
-        let (left_area, right_area) = sides.areas(coordinate(e));
-        let weighted = left_area * left + right_area * right;
-        if weighted < cheapest.0 {
-            cheapest = (weighted, left, right, e);
-        }
-        left += start;
+fn sweep(events: &[Event], shares: &Shares, count: usize, begun: u32) -> u64 {
+    let (mut right, mut difference) = (count as f32, -(begun as f32));
+    let mut cheapest = u64::MAX;
+    for (i, &e) in events.iter().enumerate() {
+        // 1 for an end, by its bit alone.
+        let end = f32::from_bits(!((e as i32) >> 31) as u32 & 1_f32.to_bits());
+        right -= end;
+        let cost = shares.cost(coordinate(e), right, difference + end);
+        difference += 1.0;
+        cheapest = cheapest.min(ranked(cost, i));
     }
-    let (weighted, left, right, e) = cheapest;
-    if best.is_none_or(|b| weighted < b.weighted) && weighted < f64::INFINITY {
-        let (left, right) = (left as usize, right as usize);
-        *best = Some(Split { axis: sides.axis, plane: coordinate(e), planar_left: true, left, right, weighted });
-    }
+    cheapest
+}
+
+/// Compares by cost, then by position.
+#[inline(always)]
+fn ranked(cost: f32, position: usize) -> u64 {
+    u64::from(cost.max(0.0).to_bits()) << 32 | position as u64
 }
 
 /// The sweep by groups of events in one plane: ends and planar triangles leave the right before the plane is judged,
-/// planar ones and starts enter the left after it.
+/// planar ones and starts enter the left after it. Also returns whether planar triangles go left.
 #[cold]
-fn sweep_with_planar(events: &[Event], sides: &Sides, begun_before: usize, count: usize, best: &mut Option<Split>) {
-    let (mut left, mut right) = (begun_before, count);
+fn sweep_with_planar(events: &[Event], shares: &Shares, count: usize, begun: u32) -> (u64, bool) {
+    let (mut left, mut right) = (count - begun as usize, count);
+    let mut cheapest = (u64::MAX, true);
+    let mut position = 0;
     for group in events.chunk_by(|a, b| a >> 32 == b >> 32) {
         let of_kind = |k| group.iter().filter(|&&e| kind(e) == k).count();
-        let planar = of_kind(PLANAR);
+        let (plane, planar) = (coordinate(group[0]), of_kind(PLANAR));
         right -= of_kind(END) + planar;
-        sides.offer(coordinate(group[0]), left, planar, right, best);
+        // Planar triangles may lie on the cell's border, which is no candidate.
+        if shares.min < plane && plane < shares.max {
+            let cost = |left: usize, right: usize| shares.cost(plane, right as f32, left as f32 - right as f32);
+            let on_left = (ranked(cost(left + planar, right), position), true);
+            let on_right = (ranked(cost(left, right + planar), position), false);
+            for candidate in [on_left, on_right] {
+                if candidate.0 < cheapest.0 {
+                    cheapest = candidate;
+                }
+            }
+        }
         left += planar + of_kind(START);
+        position += group.len();
     }
+    cheapest
 }
 
-/// Puts two lists on a stack, made from the one that begins at `own`: what goes right, and above it what goes left.
-/// Every item is written to both, and only the lists that it belongs to advance: no branch to mispredict. Returns where
-/// the left list begins.
+/// Makes two lists from one, in the free space from `top` on: the left one above the right one, which is used last.
+/// Every item is written to both, and only the lists that it belongs to advance: no branch to mispredict.
 #[inline(always)]
-fn fork<T: Copy + Default>(stack: &mut Vec<T>, own: usize, scratch: &mut Vec<T>, side: impl Fn(T) -> u8) -> usize {
-    let start = stack.len();
-    let count = start - own;
-    stack.resize(start + count, T::default());
-    if scratch.len() < count {
-        scratch.resize(count, T::default());
+fn fork<T: Copy + Default>(list: &mut Vec<T>, own: Span, top: u32, mut side: impl FnMut(T) -> u8) -> [Span; 2] {
+    let (count, top) = (own.len(), top as usize);
+    if list.len() < top + 2 * count {
+        list.resize(2 * (top + 2 * count), T::default());
     }
-    let (source, right_out) = stack[own..].split_at_mut(count);
-    let left_out = &mut scratch[..count];
+    let (used, free) = list.split_at_mut(top);
+    let (right_out, left_out) = free[..2 * count].split_at_mut(count);
     let (mut left, mut right) = (0, 0);
-    for &item in source.iter() {
+    for &item in own.of(used) {
         let side = side(item);
         left_out[left] = item;
         right_out[right] = item;
         left += usize::from(side & LEFT);
         right += usize::from(side >> 1);
     }
-    stack.truncate(start + right);
-    stack.extend_from_slice(&scratch[..left]);
-    start + right
+    [Span::new(top + count, top + count + left), Span::new(top, top + right)]
 }

@@ -223,7 +223,8 @@ fn walk(source: &Source, file: &File, up: Vec3) -> Result<Walk> {
     for spanned in given {
         let key = spanned.get_ref();
         let time = *key.time.get_ref();
-        if !(time.abs() < 1e9) || keys.last().is_some_and(|before| time <= before.time) {
+        let sound = time.is_finite() && time.abs() < 1e9;
+        if !sound || keys.last().is_some_and(|before| time <= before.time) {
             let problem = format!("time = {time} is not greater than the key's before it");
             return Err(source.fault(key.time.span(), problem, "the keys' times must increase"));
         }

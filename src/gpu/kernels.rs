@@ -56,6 +56,8 @@ pub struct Kernel {
     pub traversal: Traversal,
     /// Entries of a full stack, see [`stack_size`].
     pub stack_size: u32,
+    /// For a driver that computes on the CPU: the same results by operations that are cheaper there.
+    pub software: bool,
 }
 
 /// Stack entries for a tree of `depth` levels and the EMPTY at the bottom: a multiple of eight, so that few different
@@ -147,12 +149,14 @@ impl Kernel {
         word("MISS", math::MISS);
         word("SHORT_STACK", SHORT_STACK);
         word("STACK_SIZE", self.stack_size);
+        let mut flag = |name: &str, value: bool| writeln!(text, "const {name}: bool = {value};").unwrap();
+        flag("SOFTWARE", self.software);
         match self.entry {
             Entry::Render { config, .. } => {
-                word("BOUNCES", config.bounces());
-                writeln!(text, "const SHADOWS: bool = {};", config.shadows()).unwrap();
+                flag("SHADOWS", config.shadows());
+                writeln!(text, "const BOUNCES: u32 = {}u;", config.bounces()).unwrap();
             }
-            Entry::Trace { any_hit } => writeln!(text, "const ANY_HIT: bool = {any_hit};").unwrap(),
+            Entry::Trace { any_hit } => flag("ANY_HIT", any_hit),
         }
         text
     }
@@ -204,8 +208,11 @@ pub fn all() -> Vec<Kernel> {
     for config in Config::ALL {
         entries.extend([false, true].map(|counting| Entry::Render { config, counting }));
     }
-    traversals
-        .iter()
-        .flat_map(|&traversal| entries.iter().map(move |&entry| Kernel { entry, traversal, stack_size: 32 }))
-        .collect()
+    let mut all = Vec::new();
+    for traversal in traversals {
+        for &entry in &entries {
+            all.extend([false, true].map(|software| Kernel { entry, traversal, stack_size: 32, software }));
+        }
+    }
+    all
 }

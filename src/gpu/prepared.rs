@@ -72,7 +72,7 @@ impl<'a> GpuPrepared<'a> {
     }
 
     fn kernel(&self, entry: Entry) -> Kernel {
-        Kernel { entry, traversal: self.traversal, stack_size: self.stack_size }
+        Kernel { entry, traversal: self.traversal, stack_size: self.stack_size, software: self.backend.software() }
     }
 
     /// Uploads the uniforms of all bands of all views.

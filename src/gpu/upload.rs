@@ -2,6 +2,7 @@
 
 use super::device::GpuBackend;
 use super::shared::StructureUniform;
+use crate::accel::bvh::BvhNode;
 use crate::accel::octants::octants;
 use crate::accel::{Record, Structure};
 use crate::error::{Error, Result};
@@ -71,11 +72,16 @@ impl GpuBackend {
 
     /// Uploads a scene and a structure.
     pub(super) fn upload(&self, scene: &Scene, structure: &Structure) -> Result<Uploaded> {
+        let packed: Vec<BvhNode>;
         let (records, nodes): (&[Record], &[u8]) = match structure {
             Structure::Brute(brute) => (&brute.records, &[]),
             Structure::Grid(grid) => (&grid.records, bytes(&grid.cells)),
             Structure::KdTree(tree) => (&tree.records, bytes(&tree.nodes)),
-            Structure::Bvh(bvh) => (&bvh.records, bytes(&bvh.nodes)),
+            Structure::Bvh(bvh) => {
+                // One word says where a node leads, so that kernels need not read two
+                packed = bvh.nodes.iter().map(|node| BvhNode { first: node.reference(), ..*node }).collect();
+                (&bvh.records, bytes(&packed))
+            }
         };
         let triangle_materials: Vec<u32> = scene.triangles.iter().map(|t| t.material).collect();
         let size = |bytes: &[u8]| bytes.len() as u64;

@@ -31,7 +31,7 @@ fn check(source: &Source) -> Result<naga::Module, String> {
 #[test]
 fn every_variant_is_valid() {
     let kernels = kernels::all();
-    assert_eq!(kernels.len(), 5 * 8, "five traversals times six render and two trace entries");
+    assert_eq!(kernels.len(), 5 * 8 * 2, "five traversals, six render and two trace entries, two kinds of driver");
     for kernel in kernels {
         if let Err(problem) = check(&assemble(&kernel)) {
             panic!("{}: {problem}", kernel.label());
@@ -45,6 +45,7 @@ fn a_broken_kernel_is_located() {
         entry: Entry::Render { config: Config::P, counting: false },
         traversal: Traversal::Bvh,
         stack_size: 32,
+        software: true,
     };
     let mut source = assemble(&kernel);
     let (_, geom) = kernels::FILES.iter().find(|(name, _)| *name == "lib/geom.wgsl").unwrap();
@@ -85,7 +86,12 @@ macro_rules! same_layout {
 #[test]
 fn struct_layouts_agree() {
     let render = |traversal, counting| {
-        let kernel = Kernel { entry: Entry::Render { config: Config::PSR, counting }, traversal, stack_size: 32 };
+        let kernel = Kernel {
+            entry: Entry::Render { config: Config::PSR, counting },
+            traversal,
+            stack_size: 32,
+            software: false,
+        };
         check(&assemble(&kernel)).unwrap()
     };
     let module = &render(Traversal::Grid, true);
@@ -133,7 +139,8 @@ fn struct_layouts_agree() {
         offsets,
         [offset_of!(BvhNode, min), offset_of!(BvhNode, first), offset_of!(BvhNode, max), offset_of!(BvhNode, count)]
     );
-    let kernel = Kernel { entry: Entry::Trace { any_hit: false }, traversal: Traversal::Brute, stack_size: 8 };
+    let kernel =
+        Kernel { entry: Entry::Trace { any_hit: false }, traversal: Traversal::Brute, stack_size: 8, software: false };
     let module = &check(&assemble(&kernel)).unwrap();
     same_layout!(module, "GivenRay", TraceRay, [origin, direction]);
 }

@@ -74,7 +74,8 @@ fn files_of_unknown_kind_and_folders_are_refused() {
 fn check_sees_every_broken_invariant() {
     let sound = load_bytes(ply::CUBE.as_bytes()).unwrap();
     sound.check().unwrap();
-    let faults: [(&str, fn(&mut Scene)); 9] = [
+    type Break = fn(&mut Scene);
+    let faults: [(&str, Break); 9] = [
         ("no triangle", |s| s.triangles.clear()),
         ("uses a vertex beyond", |s| s.triangles[3].vertices[1] = 8),
         ("uses a material beyond", |s| s.triangles[3].material = 1),

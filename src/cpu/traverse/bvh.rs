@@ -1,7 +1,7 @@
 //! BVH walked by a packet of 64 rays with one shared stack (Günther et al. 2007) and the thesis's corrected vote. Twin
 //! of `kernels/traverse/bvh.wgsl`: what its barriers keep in step stands here as one loop over the rays after another.
 
-use super::bvh_stack::{EMPTY, LEAF, STACK_SIZE, leaf_records, node_reference, root_reference, wanted};
+use super::bvh_stack::{EMPTY, LEAF, STACK_SIZE, leaf_records, wanted};
 use super::{Best, GROUP, Lanes, Traverse, Triangles, bits};
 use crate::accel::bvh::{Bvh as Tree, BvhNode};
 use crate::cpu::count::Count;
@@ -50,7 +50,7 @@ impl<'a> Bvh<'a> {
     }
 
     fn start_packet(&self) -> Packet {
-        Packet { stack: [0; STACK_SIZE], depth: 0, next: root_reference(&self.pairs[0][0]), popped: false }
+        Packet { stack: [0; STACK_SIZE], depth: 0, next: self.pairs[0][0].reference(), popped: false }
     }
 
     /// Both children's boxes against every ray, the wishes added up, and the packet's next node.
@@ -88,7 +88,7 @@ impl<'a> Bvh<'a> {
             }
         }
         // The sum's sign decides; the kernel's exact counts are booleans here
-        let (left, right) = (node_reference(left), node_reference(right));
+        let (left, right) = (left.reference(), right.reference());
         if wants_both || (wants_left && wants_right) {
             let (first, second) = if votes > 0 { (right, left) } else { (left, right) };
             packet.stack[packet.depth] = second;

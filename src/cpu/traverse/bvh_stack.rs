@@ -5,27 +5,17 @@ use crate::accel::bvh::{Bvh, BvhNode};
 use crate::cpu::count::Count;
 use crate::math::{Ray, T_MAX, ray_box};
 
-/// Entries of the private stack; deeper trees are refused when they are prepared.
-pub const STACK_SIZE: usize = 128;
+/// Entries of the stack, with the one at the bottom; deeper trees are refused when they are prepared.
+pub const STACK_SIZE: usize = 96;
 
-/// A node in one word, so that a stack entry needs no read when it is popped: the left child of an inner node, or with
-/// the top bit set four bits of count and 27 bits of first record (`kernels/lib/bvh.wgsl`).
+/// What a node leads to, in one word (`kernels/lib/bvh.wgsl`): the left child of an inner node, which the right one
+/// follows, or with the top bit set four bits of count and 27 bits of first record.
 pub const LEAF: u32 = 0x8000_0000;
 
-/// A leaf without records: the end, and an empty tree's root.
+/// A leaf without records: the bottom of every stack, and an empty tree's root.
 pub const EMPTY: u32 = LEAF;
 
-/// The root's reference.
-#[inline(always)]
-pub fn root_reference(root: &BvhNode) -> u32 {
-    if root.first == 0 && root.count == 0 { EMPTY } else { node_reference(root) }
-}
-
-/// Packs a node's reference.
-#[inline(always)]
-pub fn node_reference(node: &BvhNode) -> u32 {
-    if node.count > 0 { LEAF | node.count << 27 | node.first } else { node.first }
-}
+const BOTTOM: u32 = u32::MAX;
 
 /// First record and count of a leaf's reference.
 #[inline(always)]
@@ -36,7 +26,7 @@ pub fn leaf_records(reference: u32) -> (u32, u32) {
 /// True if a ray that has found something at `t` still wants a box with this interval.
 #[inline(always)]
 pub fn wanted((near, far): (f32, f32), t: f32) -> bool {
-    near <= far && near <= t && far >= 0.0
+    near.max(0.0) <= far.min(t)
 }
 
 /// See the module.
@@ -56,49 +46,56 @@ impl<'a> BvhStack<'a> {
     /// nothing is of interest any more; a negative one ends the traversal.
     #[inline(always)]
     fn walk<C: Count>(&self, ray: &Ray, mut t: f32, count: &mut C, mut leaf: impl FnMut(u32, u32, &mut C) -> f32) {
-        let mut stack = [EMPTY; STACK_SIZE];
-        let mut depth = 1; // the lowest entry is EMPTY
-        let root = &self.pairs[0][0];
-        let (min, max) = root.corners();
-        let mut node = if wanted(ray_box(ray, min, max), t) { root_reference(root) } else { EMPTY };
-        let pop = |node: &mut u32, depth: &mut usize, stack: &[u32; STACK_SIZE], count: &mut C| {
+        let mut stack_node = [BOTTOM; STACK_SIZE];
+        let mut stack_t = [-1.0f32; STACK_SIZE];
+        let mut depth = 1; // entries with BOTTOM
+        // What the next node whose box begins before `t` leads to, or EMPTY
+        let pop = |t: f32, depth: &mut usize, nodes: &[u32; STACK_SIZE], ts: &[f32; STACK_SIZE], count: &mut C| loop {
             *depth -= 1;
-            *node = stack[*depth];
-            if *node != EMPTY {
-                count.pop();
+            let node = nodes[*depth];
+            if node == BOTTOM {
+                return EMPTY;
+            }
+            count.pop();
+            if ts[*depth] <= t {
+                return self.pairs[node as usize / 2][node as usize % 2].reference();
             }
         };
+        let root = &self.pairs[0][0];
+        let (min, max) = root.corners();
+        let mut reference = if wanted(ray_box(ray, min, max), t) { root.reference() } else { EMPTY };
         loop {
-            // Down, nearer child first, until the node is a leaf or nothing is left
-            while node & LEAF == 0 {
+            // Go down, nearer child first, until the node is a leaf or nothing is left
+            while reference & LEAF == 0 {
                 count.inner();
-                let [left, right] = &self.pairs[node as usize / 2];
+                let [left, right] = &self.pairs[reference as usize / 2];
                 let (min, max) = left.corners();
                 let l = ray_box(ray, min, max);
                 let (min, max) = right.corners();
                 let r = ray_box(ray, min, max);
-                match (wanted(l, t), wanted(r, t)) {
+                reference = match (wanted(l, t), wanted(r, t)) {
                     (true, true) => {
-                        let (near, far) = if l.0 <= r.0 { (left, right) } else { (right, left) };
-                        stack[depth] = node_reference(far);
+                        let right_first = r.0 < l.0;
+                        stack_node[depth] = reference + !right_first as u32;
+                        stack_t[depth] = l.0.max(r.0);
                         depth += 1;
-                        node = node_reference(near);
+                        if right_first { right.reference() } else { left.reference() }
                     }
-                    (true, false) => node = node_reference(left),
-                    (false, true) => node = node_reference(right),
-                    (false, false) => pop(&mut node, &mut depth, &stack, count),
+                    (true, false) => left.reference(),
+                    (false, true) => right.reference(),
+                    (false, false) => pop(t, &mut depth, &stack_node, &stack_t, count),
                 }
             }
-            if node == EMPTY {
+            if reference == EMPTY {
                 return;
             }
             count.leaf();
-            let (first, records) = leaf_records(node);
+            let (first, records) = leaf_records(reference);
             t = leaf(first, records, count);
             if t < 0.0 {
                 return;
             }
-            pop(&mut node, &mut depth, &stack, count);
+            reference = pop(t, &mut depth, &stack_node, &stack_t, count);
         }
     }
 }

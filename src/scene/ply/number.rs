@@ -94,7 +94,8 @@ pub fn integer(bytes: &[u8]) -> Option<(i64, usize)> {
         value = value.wrapping_mul(10).wrapping_add(digit.into());
         at += 1;
     }
-    ((1..=18).contains(&(at - start)) && ends(bytes, at)).then_some((if negative { -value } else { value }, at))
+    ((1..=18).contains(&(at - start)) && ends(bytes, at))
+        .then_some((if negative { value.wrapping_neg() } else { value }, at))
 }
 
 #[cold]
