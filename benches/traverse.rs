@@ -1,4 +1,5 @@
-//! CPU traversal of the same primary rays: obvhs with precomputed triangles, in 8x8 blocks on all threads.
+//! CPU traversal of the same primary rays, in blocks of 64 on all threads: the twin of every structure, and obvhs with
+//! precomputed triangles.
 //!
 //! `cargo bench --bench traverse`; set RTBENCH_SCENES for bunny and dragon.
 
@@ -11,7 +12,10 @@ use obvhs::BvhBuildParams;
 use obvhs::ray::{Ray, RayHit};
 use obvhs::rt_triangle::RtTriangle;
 use rayon::prelude::*;
+use rtbench::accel::{Selection, variants};
+use rtbench::backend::{Backend, GivenRay};
 use rtbench::camera::Camera;
+use rtbench::cpu::CpuBackend;
 use rtbench::scene::Scene;
 use std::hint::black_box;
 use std::time::Duration;
@@ -90,6 +94,16 @@ fn traversals(c: &mut Criterion, name: &str, scene: &Scene, size: u32) {
     group.sample_size(10).measurement_time(Duration::from_secs(3));
     group.throughput(Throughput::Elements(rays.len() as u64));
     group.bench_function("obvhs medium", |b| b.iter(|| black_box(obvhs.trace(&rays))));
+
+    let cpu = CpuBackend::new(0).expect("threads");
+    let ray = |&(origin, direction): &(Vec3A, Vec3A)| GivenRay { origin: origin.into(), direction: direction.into() };
+    let given: Vec<GivenRay> = rays.iter().map(ray).collect();
+    for variant in variants().iter().filter(|variant| variant.name != "brute") {
+        let selection = Selection::parse(variant.name).expect("a name of the table");
+        let built = selection.build(scene, 0).expect("builds");
+        let mut twin = cpu.prepare(scene, &built.structure, selection.traversal()).expect("fits");
+        group.bench_function(variant.name, |b| b.iter(|| black_box(twin.trace(&given, false).expect("traces"))));
+    }
 }
 
 criterion_group!(benches, traverse);

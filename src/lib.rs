@@ -1,12 +1,13 @@
 //! rtbench: a headless benchmark for ray tracing on GPUs.
 //!
-//! Data flows down one staircase; a module uses only modules above it:
+//! Data flows down one staircase; a module uses only modules above it (`tests/it/architecture.rs` holds us to it):
 //!
 //! | step | what it is |
 //! |---|---|
 //! | [`error`] | the one error that reaches a user: file, line, problem, mend |
 //! | [`math`] | boxes, rays, triangles and the two tests; the twin of `kernels/lib/geom.wgsl` |
 //! | [`scene`] | mesh, materials, lights; one file per format; procedural scenes |
+//! | [`config`] | ray configurations P, PS and PSR |
 //! | [`camera`] | cameras, camera paths and their files |
 //! | [`accel`] | acceleration structures: builders, node layouts, validation, memory model |
 //! | [`backend`] | what a device must be able to do: render, count, time, trace |
@@ -21,6 +22,7 @@ pub mod backend;
 pub mod bench;
 pub mod camera;
 pub mod cli;
+pub mod config;
 pub mod cpu;
 pub mod error;
 pub mod gpu;

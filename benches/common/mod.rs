@@ -107,3 +107,32 @@ impl BHShape<f32, 3> for Shape {
         self.node
     }
 }
+
+/// In ascending order.
+pub fn sorted(values: &[f64]) -> Vec<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted
+}
+
+/// The middle value, or the mean of the two in the middle.
+pub fn median(values: &[f64]) -> f64 {
+    let sorted = sorted(values);
+    let n = sorted.len();
+    (sorted[(n - 1) / 2] + sorted[n / 2]) / 2.0
+}
+
+/// The values between which the median lies with a probability of at least 95 % (all of them, if there are too few).
+pub fn sign_test_interval(values: &[f64]) -> (f64, f64) {
+    let sorted = sorted(values);
+    let n = sorted.len();
+    // P(at most k of n are below the median), k growing, until a tail would exceed 2.5 %.
+    let (mut k, mut tail, mut term) = (0, 0.0, 0.5_f64.powi(n as i32));
+    while tail + term <= 0.025 {
+        tail += term;
+        k += 1;
+        term *= (n - k + 1) as f64 / k as f64;
+    }
+    let k = k.saturating_sub(1);
+    (sorted[k], sorted[n - 1 - k])
+}

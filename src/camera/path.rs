@@ -4,7 +4,7 @@ use super::file;
 use super::orbit::{LightOrbit, Orbit};
 use super::walk::Walk;
 use super::{Camera, View};
-use crate::backend::Config;
+use crate::config::Config;
 use crate::error::{Error, Result};
 use crate::math::Aabb;
 use crate::scene::{Light, Scene, did_you_mean};

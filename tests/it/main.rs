@@ -1,6 +1,7 @@
 //! All integration tests, in one crate so that they link once.
 
 mod accel; // builders x degenerate inputs, validation, memory model, determinism
+mod architecture; // who may use whom, and where wgpu, clocks and output may stand
 mod camera; // camera paths: files, thinning, fitting, errors
 mod cli; // the program as a user runs it: outputs, exit codes, broken input
 mod fakes; // records with known content, a device that breaks on demand
