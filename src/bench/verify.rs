@@ -269,7 +269,7 @@ impl Differences {
             let triangles_differ = pixels.iter().any(|p| p.is_none_or(|p| p.triangle != right));
             let far_off = match (found.distances.get(index), expected.distances.get(index)) {
                 (Some(a), Some(b)) if exact => a.to_bits() != b.to_bits(),
-                (Some(a), Some(b)) => !((a - b).abs() <= DISTANCE_SLACK * b.abs()),
+                (Some(a), Some(b)) => a.is_nan() || (a - b).abs() > DISTANCE_SLACK * b.abs(),
                 _ => false,
             };
             *differs |= triangles_differ || far_off;

@@ -60,10 +60,10 @@ pub struct Kernel {
     pub software: bool,
 }
 
-/// Stack entries for a tree of `depth` levels and the EMPTY at the bottom: a multiple of eight, so that few different
+/// Stack entries for a tree of `depth` levels and the EMPTY at the bottom: a multiple of 32, so that few different
 /// kernels are compiled.
 pub fn stack_size(depth: u32) -> u32 {
-    (depth + 2).next_multiple_of(8)
+    (depth + 2).next_multiple_of(32)
 }
 
 /// An assembled kernel.
