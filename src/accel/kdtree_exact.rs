@@ -22,11 +22,15 @@ fn event(x: f32, kind: u32, local: u32) -> Event {
     u64::from(x.to_bits()) << 32 | u64::from(kind << 30 | local)
 }
 
-/// By coordinate, then in the order in which a sweep needs them.
-fn order(event: &Event) -> u64 {
-    // Bits that compare as the float does: all of a negative one flipped, the sign of a positive one.
-    let flip = ((*event as i64) >> 63) as u64 >> 32 << 32;
-    event ^ (flip | 1 << 63)
+/// By coordinate, then in the order in which a sweep needs them: bits that compare as the float does (all of a negative
+/// one flipped, the sign of a positive one).
+fn ordered(event: Event) -> u64 {
+    event ^ (((event as i64) >> 63) as u64 >> 32 << 32 | 1 << 63)
+}
+
+/// The event whose [`ordered`] form this is.
+fn restored(ordered: u64) -> Event {
+    ordered ^ (((!ordered as i64) >> 63) as u64 >> 32 << 32 | 1 << 63)
 }
 
 #[inline(always)]
@@ -151,18 +155,19 @@ impl Sweep<'_> {
         for (local, prim) in self.prims.iter().enumerate() {
             let (min, max, local) = (prim.min[axis], prim.max[axis], local as u32);
             if min == max {
-                events.push(event(min, PLANAR, local));
+                events.push(ordered(event(min, PLANAR, local)));
                 self.any_planar[axis] = true;
                 continue;
             }
             if min > cell.min[axis] {
-                events.push(event(min, START, local));
+                events.push(ordered(event(min, START, local)));
             }
             if max < cell.max[axis] {
-                events.push(event(max, END, local));
+                events.push(ordered(event(max, END, local)));
             }
         }
-        events.sort_unstable_by_key(order);
+        events.sort_unstable();
+        events.iter_mut().for_each(|e| *e = restored(*e));
         events
     }
 
@@ -194,13 +199,15 @@ impl Sweep<'_> {
     fn find(&self, node: &Node) -> Option<Cut> {
         let count = node.locals.len();
         let (mut cheapest, mut axis, mut planar_left) = (u64::MAX, 0, true);
-        for a in 0..3 {
-            let Some(shares) = Shares::new(&node.cell, a) else { continue };
+        for (a, shares) in Shares::new(&node.cell).iter().enumerate() {
+            if shares.max < shares.min {
+                continue;
+            }
             let events = node.events[a].of(&self.events[a]);
             let (found, left) = if self.any_planar[a] && events.iter().any(|&e| kind(e) == PLANAR) {
-                sweep_with_planar(events, &shares, count, node.begun[a])
+                sweep_with_planar(events, shares, count, node.begun[a])
             } else {
-                (sweep(events, &shares, count, node.begun[a]), true)
+                (sweep(events, shares, count, node.begun[a]), true)
             };
             if found < cheapest {
                 (cheapest, axis, planar_left) = (found, a, left);
