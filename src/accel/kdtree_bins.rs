@@ -173,6 +173,12 @@ impl Shares {
     pub fn cost(&self, plane: f32, right: f32, left_minus_right: f32) -> f32 {
         self.sum * right + (self.at_min + self.per_length * (plane - self.min)) * left_minus_right
     }
+
+    /// [`Shares::cost`] of four planes.
+    #[inline(always)]
+    pub fn costs(&self, planes: Vec4, right: Vec4, left_minus_right: Vec4) -> Vec4 {
+        self.sum * right + (self.at_min + self.per_length * (planes - self.min)) * left_minus_right
+    }
 }
 
 /// The areas of both sides of a plane, as functions of its coordinate.
