@@ -117,8 +117,8 @@ impl Bins {
     fn add(&mut self, items: &[Item], binning: &Binning) {
         for item in items {
             let bins = binning.of(item);
-            for axis in 0..3 {
-                let bin = bins[axis] as usize % MAX_BINS;
+            for (axis, bin) in bins.into_iter().take(3).enumerate() {
+                let bin = bin as usize % MAX_BINS;
                 self.boxes[axis][bin].grow(item.prim.min, item.prim.max);
                 self.counts[axis][bin] += 1;
             }

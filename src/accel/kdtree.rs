@@ -30,7 +30,8 @@ pub struct KdTree {
 impl KdTree {
     /// Calls `visit` with every node, its cell and its depth, in the order of the nodes.
     ///
-    /// Follows right links only upwards and only inside the node array, so that it ends on any input.
+    /// For trees that are known to be sound (see [`super::Structure::validate`]); links that lead nowhere or backwards
+    /// are not followed.
     pub fn for_each_cell(&self, mut visit: impl FnMut(KdNode, &Aabb, u32)) {
         let mut waiting = vec![(0, self.bounds, 0)];
         while let Some((index, cell, depth)) = waiting.pop() {

@@ -6,7 +6,7 @@
 use super::kdtree_build::Split;
 use super::prims::{CHUNK, Prim};
 use crate::math::Aabb;
-use glam::{Vec3, Vec4};
+use glam::{Vec3, Vec3A, Vec4};
 use rayon::prelude::*;
 
 /// Most bins per axis.
@@ -147,21 +147,37 @@ pub(super) struct Shares {
 }
 
 impl Shares {
-    /// `None` if no plane fits into the cell, or shares leave the range of f32.
+    /// By axis. An axis on which no plane fits into the cell, or shares leave the range of f32, has `max < min`.
     #[inline(always)]
-    pub fn new(cell: &Aabb, axis: usize) -> Option<Shares> {
-        let Sides { min, max, section, rim, .. } = Sides::new(cell, axis);
-        let per_area = 1.0 / (section + rim * (f64::from(max) - f64::from(min)));
-        let (at_min, per_length) = ((section * per_area) as f32, (rim * per_area) as f32);
+    pub fn new(cell: &Aabb) -> [Shares; 3] {
+        // Lengths in units of the longest: their products neither overflow nor vanish.
+        let extent = Vec3A::from(cell.max) - Vec3A::from(cell.min);
+        let unit = 1.0 / extent.max_element();
+        let e = extent * unit;
+        let (u, v) = (Vec3A::new(e.y, e.z, e.x), Vec3A::new(e.z, e.x, e.y));
+        let per_area = 1.0 / e.dot(u);
+        let (at_min, per_length) = (u * v * per_area, (u + v) * (per_area * unit));
         // An area of zero makes one of these infinite or NaN.
-        let usable = max > min && (max - min + per_length + at_min).is_finite();
-        usable.then_some(Shares { min, max, at_min, per_length, sum: 1.0 + at_min })
+        let usable = extent.cmpgt(Vec3A::ZERO) & (at_min + per_length + extent).cmplt(Vec3A::INFINITY);
+        [0, 1, 2].map(|a| Shares {
+            min: cell.min[a],
+            max: if usable.test(a) { cell.max[a] } else { f32::NEG_INFINITY },
+            at_min: at_min[a],
+            per_length: per_length[a],
+            sum: 1.0 + at_min[a],
+        })
     }
 
     /// Expected number of tests: with the share `p` on the left, `p left + (sum - p) right`.
     #[inline(always)]
     pub fn cost(&self, plane: f32, right: f32, left_minus_right: f32) -> f32 {
         self.sum * right + (self.at_min + self.per_length * (plane - self.min)) * left_minus_right
+    }
+
+    /// [`Shares::cost`] of four planes.
+    #[inline(always)]
+    pub fn costs(&self, planes: Vec4, right: Vec4, left_minus_right: Vec4) -> Vec4 {
+        self.sum * right + (self.at_min + self.per_length * (planes - self.min)) * left_minus_right
     }
 }
 

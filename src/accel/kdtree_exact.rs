@@ -7,48 +7,11 @@
 use super::kdtree::KdNode;
 use super::kdtree_bins::Shares;
 use super::kdtree_build::{Builder, Subtree, halves};
+use super::kdtree_events::{
+    END, Event, PLANAR, START, begun, coordinate, event, kind, local, ordered, restored, sweep, sweep_with_planar,
+};
 use super::prims::Prim;
 use crate::math::Aabb;
-
-/// A triangle's box begins, lies or ends in a plane: `coordinate (bits) << 32 | kind << 30 | number of the triangle in
-/// this subtree`.
-type Event = u64;
-
-const END: u32 = 0;
-const PLANAR: u32 = 1;
-const START: u32 = 2;
-
-fn event(x: f32, kind: u32, local: u32) -> Event {
-    u64::from(x.to_bits()) << 32 | u64::from(kind << 30 | local)
-}
-
-/// By coordinate, then in the order in which a sweep needs them.
-fn order(event: &Event) -> u64 {
-    // Bits that compare as the float does: all of a negative one flipped, the sign of a positive one.
-    let flip = ((*event as i64) >> 63) as u64 >> 32 << 32;
-    event ^ (flip | 1 << 63)
-}
-
-#[inline(always)]
-fn coordinate(event: Event) -> f32 {
-    f32::from_bits((event >> 32) as u32)
-}
-
-#[inline(always)]
-fn kind(event: Event) -> u32 {
-    (event as u32) >> 30
-}
-
-#[inline(always)]
-fn local(event: Event) -> usize {
-    (event as u32 & 0x3fff_ffff) as usize
-}
-
-/// 1 where a triangle begins or lies, 0 where it ends.
-#[inline(always)]
-fn begun(event: Event) -> u32 {
-    (event >> 31 | event >> 30) as u32 & 1
-}
 
 /// Sides that a triangle goes to, as bits.
 const LEFT: u8 = 1;
@@ -151,18 +114,19 @@ impl Sweep<'_> {
         for (local, prim) in self.prims.iter().enumerate() {
             let (min, max, local) = (prim.min[axis], prim.max[axis], local as u32);
             if min == max {
-                events.push(event(min, PLANAR, local));
+                events.push(ordered(event(min, PLANAR, local)));
                 self.any_planar[axis] = true;
                 continue;
             }
             if min > cell.min[axis] {
-                events.push(event(min, START, local));
+                events.push(ordered(event(min, START, local)));
             }
             if max < cell.max[axis] {
-                events.push(event(max, END, local));
+                events.push(ordered(event(max, END, local)));
             }
         }
-        events.sort_unstable_by_key(order);
+        events.sort_unstable();
+        events.iter_mut().for_each(|e| *e = restored(*e));
         events
     }
 
@@ -194,13 +158,15 @@ impl Sweep<'_> {
     fn find(&self, node: &Node) -> Option<Cut> {
         let count = node.locals.len();
         let (mut cheapest, mut axis, mut planar_left) = (u64::MAX, 0, true);
-        for a in 0..3 {
-            let Some(shares) = Shares::new(&node.cell, a) else { continue };
+        for (a, shares) in Shares::new(&node.cell).iter().enumerate() {
+            if shares.max < shares.min {
+                continue;
+            }
             let events = node.events[a].of(&self.events[a]);
             let (found, left) = if self.any_planar[a] && events.iter().any(|&e| kind(e) == PLANAR) {
-                sweep_with_planar(events, &shares, count, node.begun[a])
+                sweep_with_planar(events, shares, count, node.begun[a])
             } else {
-                (sweep(events, &shares, count, node.begun[a]), true)
+                (sweep(events, shares, count, node.begun[a]), true)
             };
             if found < cheapest {
                 (cheapest, axis, planar_left) = (found, a, left);
@@ -301,63 +267,6 @@ impl Sweep<'_> {
         events.extend(list);
         (left.top[axis], right.top[axis]) = (events.len() as u32, events.len() as u32);
     }
-}
-
-/// The sweep where no triangle lies in a plane of its axis: every event is a candidate by itself. Returns the lowest cost
-/// (bits of an f32) and, below it, the event that has it.
-///
-/// Of several events in one plane, all but the last end and the first start see too many triangles on one side, and so
-/// cost more than the plane does; they need no care. With the share `p` of the cell's area on the left and `s - p` on
-/// the right (`s` is constant), the cost is `p left + (s - p) right = s right + p (left - right)`, and `left - right`
-/// grows by one with every event. Most lists are so short that a mispredicted branch costs more than an event: there is
-/// none but the loop's.
-#[inline(always)]
-fn sweep(events: &[Event], shares: &Shares, count: usize, begun: u32) -> u64 {
-    let (mut right, mut difference) = (count as f32, -(begun as f32));
-    let mut cheapest = u64::MAX;
-    for (i, &e) in events.iter().enumerate() {
-        // 1 for an end, by its bit alone.
-        let end = f32::from_bits(!((e as i32) >> 31) as u32 & 1_f32.to_bits());
-        right -= end;
-        let cost = shares.cost(coordinate(e), right, difference + end);
-        difference += 1.0;
-        cheapest = cheapest.min(ranked(cost, i));
-    }
-    cheapest
-}
-
-/// Compares by cost, then by position.
-#[inline(always)]
-fn ranked(cost: f32, position: usize) -> u64 {
-    u64::from(cost.max(0.0).to_bits()) << 32 | position as u64
-}
-
-/// The sweep by groups of events in one plane: ends and planar triangles leave the right before the plane is judged,
-/// planar ones and starts enter the left after it. Also returns whether planar triangles go left.
-#[cold]
-fn sweep_with_planar(events: &[Event], shares: &Shares, count: usize, begun: u32) -> (u64, bool) {
-    let (mut left, mut right) = (count - begun as usize, count);
-    let mut cheapest = (u64::MAX, true);
-    let mut position = 0;
-    for group in events.chunk_by(|a, b| a >> 32 == b >> 32) {
-        let of_kind = |k| group.iter().filter(|&&e| kind(e) == k).count();
-        let (plane, planar) = (coordinate(group[0]), of_kind(PLANAR));
-        right -= of_kind(END) + planar;
-        // Planar triangles may lie on the cell's border, which is no candidate.
-        if shares.min < plane && plane < shares.max {
-            let cost = |left: usize, right: usize| shares.cost(plane, right as f32, left as f32 - right as f32);
-            let on_left = (ranked(cost(left + planar, right), position), true);
-            let on_right = (ranked(cost(left, right + planar), position), false);
-            for candidate in [on_left, on_right] {
-                if candidate.0 < cheapest.0 {
-                    cheapest = candidate;
-                }
-            }
-        }
-        left += planar + of_kind(START);
-        position += group.len();
-    }
-    cheapest
 }
 
 /// Makes two lists from one, in the free space from `top` on: the left one above the right one, which is used last.

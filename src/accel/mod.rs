@@ -13,6 +13,7 @@ pub mod grid_build;
 pub mod kdtree;
 mod kdtree_bins;
 pub mod kdtree_build;
+mod kdtree_events;
 mod kdtree_exact;
 pub mod octants;
 pub mod ploc;
@@ -20,9 +21,11 @@ pub mod prims;
 mod properties;
 mod registry;
 pub mod sah;
+mod selection;
 
 pub use properties::Properties;
-pub use registry::{Built, MAX_THREADS, OptionInfo, Selection, VariantInfo, variants};
+pub use registry::{OptionInfo, VariantInfo, variants};
+pub use selection::{Built, MAX_THREADS, Selection};
 
 use crate::math::Aabb;
 use bytemuck::{Pod, Zeroable};

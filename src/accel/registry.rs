@@ -1,9 +1,9 @@
 //! What `--structure` can name: every pair of builder and traversal, with its options. One row per variant.
 
+use super::selection::Selection;
 use super::{Structure, Traversal, brute, bvh_build, grid_build, kdtree_build, ploc};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::scene::Scene;
-use std::time::Instant;
 
 /// A variant of `--structure`: a builder, a traversal, and the options of the builder.
 #[derive(Debug)]
@@ -19,10 +19,10 @@ pub struct VariantInfo {
     /// How it is walked.
     pub traversal: Traversal,
     /// Variants with the same builder and equal options share one built structure.
-    builder: &'static str,
+    pub(super) builder: &'static str,
     /// False for builders that use one thread whatever they are given.
-    parallel: bool,
-    build: fn(&Selection, &Scene) -> Result<Structure>,
+    pub(super) parallel: bool,
+    pub(super) build: fn(&Selection, &Scene) -> Result<Structure>,
 }
 
 /// An option of a variant.
@@ -34,12 +34,12 @@ pub struct OptionInfo {
     pub default: &'static str,
     /// One line for `--help`.
     pub meaning: &'static str,
-    kind: Kind,
+    pub(super) kind: Kind,
 }
 
 /// What an option's value may be.
 #[derive(Debug)]
-enum Kind {
+pub(super) enum Kind {
     /// A whole number from .. to.
     Count(u32, u32),
     /// A whole number from .. to, or `auto`.
@@ -190,125 +190,9 @@ fn build_ploc(s: &Selection, scene: &Scene) -> Result<Structure> {
     ploc::build(scene, params).map(Structure::Bvh)
 }
 
-/// A variant with its options, as `--structure` gives it: `name[:key=value,...]`.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub struct Selection {
-    /// Row in [`variants`].
-    variant: usize,
-    /// One value per option, in the table's order and spelled as the table would.
-    values: Vec<String>,
-}
-
-/// A structure, and what it took to build it.
-#[derive(Clone, Debug)]
-pub struct Built {
-    /// The structure.
-    pub structure: Structure,
-    /// Wall-clock time, in milliseconds, from the scene's triangles to the finished structure.
-    pub build_ms: f64,
-    /// Threads that the builder could use.
-    pub build_threads: usize,
-}
-
-/// Most threads of a build.
-pub const MAX_THREADS: usize = 1024;
-
-impl Selection {
-    /// Reads `name[:key=value,...]`.
-    pub fn parse(text: &str) -> Result<Selection> {
-        let place = || format!("--structure {text}");
-        let (name, options) = text.split_once(':').unwrap_or((text, ""));
-        let Some(variant) = variants().iter().position(|v| v.name == name) else {
-            let names: Vec<&str> = variants().iter().map(|v| v.name).collect();
-            let problem = format!("there is no structure '{name}'");
-            return Err(Error::argument(place(), problem, format!("one of {}", names.join(", "))));
-        };
-        let table = variants()[variant].options;
-        let mut values: Vec<String> = table.iter().map(|o| o.default.to_owned()).collect();
-        for option in options.split(',').filter(|o| !o.is_empty()) {
-            let (key, value) = option.split_once('=').unwrap_or((option, ""));
-            let Some(index) = table.iter().position(|o| o.key == key) else {
-                let keys: Vec<&str> = table.iter().map(|o| o.key).collect();
-                let mend = if keys.is_empty() { "it has none".into() } else { format!("one of {}", keys.join(", ")) };
-                return Err(Error::argument(place(), format!("{name} has no option '{key}'"), mend));
-            };
-            values[index] = table[index]
-                .kind
-                .parse(value)
-                .map_err(|mend| Error::argument(place(), format!("'{value}' is no value for {key}"), mend))?;
-        }
-        Ok(Selection { variant, values })
-    }
-
-    /// The variant's row in the table.
-    pub fn info(&self) -> &'static VariantInfo {
-        &variants()[self.variant]
-    }
-
-    /// The variant's name.
-    pub fn name(&self) -> &'static str {
-        self.info().name
-    }
-
-    /// The options that differ from their defaults, `key=value,...`, or `default`.
-    pub fn variant(&self) -> String {
-        let options = self.info().options.iter().zip(&self.values);
-        let set: Vec<String> =
-            options.filter(|(o, v)| o.default != *v).map(|(o, v)| format!("{}={v}", o.key)).collect();
-        if set.is_empty() { "default".to_owned() } else { set.join(",") }
-    }
-
-    /// How it is walked.
-    pub fn traversal(&self) -> Traversal {
-        self.info().traversal
-    }
-
-    /// Equal for selections whose built structures are the same.
-    pub fn build_key(&self) -> String {
-        format!("{}:{}", self.info().builder, self.values.join(","))
-    }
-
-    /// Builds the structure on `threads` threads (0: as many as there are).
-    pub fn build(&self, scene: &Scene, threads: usize) -> Result<Built> {
-        let pool_error = |problem: String| Error::argument("--threads", problem, format!("0 (all) to {MAX_THREADS}"));
-        if threads > MAX_THREADS {
-            return Err(pool_error(format!("{threads} threads are too many")));
-        }
-        let threads = if self.info().parallel { threads } else { 1 };
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .map_err(|e| pool_error(format!("cannot start {threads} threads: {e}")))?;
-        pool.install(|| {
-            let start = Instant::now();
-            let structure = (self.info().build)(self, scene)?;
-            let build_ms = start.elapsed().as_secs_f64() * 1e3;
-            Ok(Built { structure, build_ms, build_threads: rayon::current_num_threads() })
-        })
-    }
-
-    fn value(&self, key: &str) -> &str {
-        let index = self.info().options.iter().position(|o| o.key == key).expect("an option of the table");
-        &self.values[index]
-    }
-
-    /// `None` for `auto`.
-    fn count(&self, key: &str) -> Option<u32> {
-        self.value(key).parse().ok()
-    }
-
-    fn size(&self, key: &str) -> usize {
-        self.value(key).parse().expect("checked when it was read")
-    }
-
-    fn number(&self, key: &str) -> f64 {
-        self.value(key).parse().expect("checked when it was read")
-    }
-}
-
 impl Kind {
     /// The value in its one spelling, or what would be one.
-    fn parse(&self, value: &str) -> Result<String, String> {
+    pub(super) fn parse(&self, value: &str) -> Result<String, String> {
         let count = |from: u32, to: u32| {
             let n = value.parse::<u32>().ok().filter(|n| (from..=to).contains(n));
             n.map(|n| n.to_string())

@@ -50,7 +50,7 @@ impl CostModel {
     /// Expected cost of a ray through a kd-tree; `None` if the root has no area.
     pub fn kdtree(&self, tree: &KdTree) -> Option<f64> {
         let root = half_area(&tree.bounds);
-        if !(root > 0.0) {
+        if root.is_nan() || root <= 0.0 {
             return None;
         }
         let mut cost = 0.0;

@@ -17,7 +17,8 @@ pub(crate) type Verdict = Result<(), String>;
 /// Returns the message if the condition does not hold.
 macro_rules! ensure {
     ($condition:expr, $($message:tt)+) => {
-        if !$condition {
+        let holds: bool = $condition;
+        if !holds {
             return Err(format!($($message)+));
         }
     };

@@ -11,8 +11,11 @@ fn scene() -> Scene {
     scenes::random("good", 400, 1.0, 0.1, 9)
 }
 
+/// What is done, words that validation must say about it, and how it is done.
+type Damage<'a, T> = (&'a str, &'a str, &'a dyn Fn(&mut T));
+
 /// Breaks a good structure and checks that validation says so, in these words.
-fn assert_noticed<T: Clone>(good: &T, wrap: fn(T) -> Structure, damages: &[(&str, &str, &dyn Fn(&mut T))]) {
+fn assert_noticed<T: Clone>(good: &T, wrap: fn(T) -> Structure, damages: &[Damage<T>]) {
     let scene = scene();
     wrap(good.clone()).validate(&scene).expect("good before it is broken");
     for (damage, words, break_it) in damages {
@@ -39,7 +42,7 @@ fn in_a_bvh() {
     let Structure::Bvh(good) = build("bvh", &scene(), 1) else { unreachable!() };
     let (leaf, inner) = (leaf_of(&good), inner_of(&good));
     let other = good.nodes.iter().rposition(|n| n.count > 1).unwrap();
-    let damages: &[(&str, &str, &dyn Fn(&mut Bvh))] = &[
+    let damages: &[Damage<Bvh>] = &[
         ("shrunk leaf", "span", &|b| b.nodes[leaf].max[0] -= 1e-3),
         ("grown leaf", "its content", &|b| b.nodes[leaf].max[0] += 1e-3),
         ("shrunk inner box", "its content", &|b| b.nodes[inner].min[1] += 1e-3),
@@ -86,7 +89,7 @@ fn in_a_kdtree() {
     let leaf = good.nodes.iter().position(|n| n.is_leaf() && n.count() > 1).unwrap();
     let first = good.nodes[leaf].first() as usize;
     let moved = |n: KdNode, by: f32| KdNode::inner(n.axis() as u32, n.split() + by, n.right());
-    let damages: &[(&str, &str, &dyn Fn(&mut KdTree))] = &[
+    let damages: &[Damage<KdTree>] = &[
         ("moved plane", "instead of", &|t| t.nodes[0] = moved(t.nodes[0], 0.05)),
         ("plane outside its cell", "not inside its cell", &|t| t.nodes[inner] = moved(t.nodes[inner], 9.0)),
         ("plane on the border", "not inside its cell", &|t| {
@@ -135,7 +138,7 @@ fn in_a_grid() {
     let full = good.cells.iter().position(|c| c.count > 1).unwrap();
     let empty = good.cells.iter().position(|c| c.count == 0).unwrap();
     let first = good.cells[full].first as usize;
-    let damages: &[(&str, &str, &dyn Fn(&mut Grid))] = &[
+    let damages: &[Damage<Grid>] = &[
         ("resolution", "cells instead of", &|g| g.resolution[0] += 1),
         ("swapped resolution", "", &|g| {
             let [x, y, z] = g.resolution;
@@ -174,7 +177,7 @@ fn in_a_grid() {
 #[test]
 fn in_a_list() {
     let Structure::Brute(good) = build("brute", &scene(), 1) else { unreachable!() };
-    let damages: &[(&str, &str, &dyn Fn(&mut Brute))] = &[
+    let damages: &[Damage<Brute>] = &[
         ("lost", "not all", &|b| {
             b.records.pop();
         }),

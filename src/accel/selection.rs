@@ -1,0 +1,123 @@
+//! One structure as a user selects it, and what it takes to build it.
+
+use super::registry::{VariantInfo, variants};
+use super::{Structure, Traversal};
+use crate::error::{Error, Result};
+use crate::scene::Scene;
+use std::time::Instant;
+
+/// A variant with its options, as `--structure` gives it: `name[:key=value,...]`.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Selection {
+    /// Row in [`variants`].
+    variant: usize,
+    /// One value per option, in the table's order and spelled as the table would.
+    values: Vec<String>,
+}
+
+/// A structure, and what it took to build it.
+#[derive(Clone, Debug)]
+pub struct Built {
+    /// The structure.
+    pub structure: Structure,
+    /// Wall-clock time, in milliseconds, from the scene's triangles to the finished structure.
+    pub build_ms: f64,
+    /// Threads that the builder could use.
+    pub build_threads: usize,
+}
+
+/// Most threads of a build.
+pub const MAX_THREADS: usize = 1024;
+
+impl Selection {
+    /// Reads `name[:key=value,...]`.
+    pub fn parse(text: &str) -> Result<Selection> {
+        let place = || format!("--structure {text}");
+        let (name, options) = text.split_once(':').unwrap_or((text, ""));
+        let Some(variant) = variants().iter().position(|v| v.name == name) else {
+            let names: Vec<&str> = variants().iter().map(|v| v.name).collect();
+            let problem = format!("there is no structure '{name}'");
+            return Err(Error::argument(place(), problem, format!("one of {}", names.join(", "))));
+        };
+        let table = variants()[variant].options;
+        let mut values: Vec<String> = table.iter().map(|o| o.default.to_owned()).collect();
+        for option in options.split(',').filter(|o| !o.is_empty()) {
+            let (key, value) = option.split_once('=').unwrap_or((option, ""));
+            let Some(index) = table.iter().position(|o| o.key == key) else {
+                let keys: Vec<&str> = table.iter().map(|o| o.key).collect();
+                let mend = if keys.is_empty() { "it has none".into() } else { format!("one of {}", keys.join(", ")) };
+                return Err(Error::argument(place(), format!("{name} has no option '{key}'"), mend));
+            };
+            values[index] = table[index]
+                .kind
+                .parse(value)
+                .map_err(|mend| Error::argument(place(), format!("'{value}' is no value for {key}"), mend))?;
+        }
+        Ok(Selection { variant, values })
+    }
+
+    /// The variant's row in the table.
+    pub fn info(&self) -> &'static VariantInfo {
+        &variants()[self.variant]
+    }
+
+    /// The variant's name.
+    pub fn name(&self) -> &'static str {
+        self.info().name
+    }
+
+    /// The options that differ from their defaults, `key=value,...`, or `default`.
+    pub fn variant(&self) -> String {
+        let options = self.info().options.iter().zip(&self.values);
+        let set: Vec<String> =
+            options.filter(|(o, v)| o.default != *v).map(|(o, v)| format!("{}={v}", o.key)).collect();
+        if set.is_empty() { "default".to_owned() } else { set.join(",") }
+    }
+
+    /// How it is walked.
+    pub fn traversal(&self) -> Traversal {
+        self.info().traversal
+    }
+
+    /// Equal for selections whose built structures are the same.
+    pub fn build_key(&self) -> String {
+        format!("{}:{}", self.info().builder, self.values.join(","))
+    }
+
+    /// Builds the structure on `threads` threads (0: as many as there are).
+    pub fn build(&self, scene: &Scene, threads: usize) -> Result<Built> {
+        let pool_error = |problem: String| Error::argument("--threads", problem, format!("0 (all) to {MAX_THREADS}"));
+        if threads > MAX_THREADS {
+            return Err(pool_error(format!("{threads} threads are too many")));
+        }
+        let threads = if self.info().parallel { threads } else { 1 };
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .map_err(|e| pool_error(format!("cannot start {threads} threads: {e}")))?;
+        pool.install(|| {
+            let start = Instant::now();
+            let structure = (self.info().build)(self, scene)?;
+            let build_ms = start.elapsed().as_secs_f64() * 1e3;
+            Ok(Built { structure, build_ms, build_threads: rayon::current_num_threads() })
+        })
+    }
+
+    pub(super) fn value(&self, key: &str) -> &str {
+        let index = self.info().options.iter().position(|o| o.key == key).expect("an option of the table");
+        &self.values[index]
+    }
+
+    /// `None` for `auto`.
+    pub(super) fn count(&self, key: &str) -> Option<u32> {
+        self.value(key).parse().ok()
+    }
+
+    pub(super) fn size(&self, key: &str) -> usize {
+        self.value(key).parse().expect("checked when it was read")
+    }
+
+    pub(super) fn number(&self, key: &str) -> f64 {
+        self.value(key).parse().expect("checked when it was read")
+    }
+}
