@@ -156,7 +156,6 @@ pub struct TriangleHit {
 ///
 /// What makes it order-consistent with [`ray_box`] is described at the head of this module.
 // Comparisons are written so that NaN, which degenerate input may bring, fails them.
-#[allow(clippy::neg_cmp_op_on_partial_ord)]
 #[inline(always)]
 pub fn intersect(ray: &Ray, v0: Vec3A, v1: Vec3A, v2: Vec3A, t_max: f32) -> Option<TriangleHit> {
     let e1 = v1 - v0;

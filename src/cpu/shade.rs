@@ -83,6 +83,6 @@ pub fn reflected_ray(surface: &Surface, direction: Vec3A) -> Ray {
 
 /// Eight bits per channel, red lowest, alpha 255.
 pub fn rgba8(colour: Vec3A) -> u32 {
-    let channel = |x: f32| (x.max(0.0).min(1.0) * 255.0 + 0.5) as u32;
+    let channel = |x: f32| (x.clamp(0.0, 1.0) * 255.0 + 0.5) as u32;
     channel(colour.x) | channel(colour.y) << 8 | channel(colour.z) << 16 | 255 << 24
 }
