@@ -14,7 +14,7 @@ pub const MAX_TRIANGLES: usize = 1 << 29;
 
 /// Triangles handled together where work is shared out between threads: a constant, so that no result depends on the
 /// number of threads.
-pub const CHUNK: usize = 16_384;
+pub const CHUNK: usize = 8192;
 
 /// Added to an index that rides along as a float: without it the lane would be denormal, and a multiplication that
 /// meets a denormal number costs a hundred cycles. With it every index below 2^29 is an ordinary float.

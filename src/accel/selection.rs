@@ -95,6 +95,8 @@ impl Selection {
             .num_threads(threads)
             .build()
             .map_err(|e| pool_error(format!("cannot start {threads} threads: {e}")))?;
+        // Starting threads is no part of building: wait until all of them run.
+        pool.broadcast(|_| ());
         pool.install(|| {
             let start = Instant::now();
             let structure = (self.info().build)(self, scene)?;
