@@ -65,11 +65,35 @@ pub fn program() -> Program {
     }
 }
 
-/// The version of a package in a `Cargo.lock`; the first where there are several.
+/// The version of one of our own dependencies in our `Cargo.lock`. Where others bring further versions of it, our entry
+/// in the lock names the one that we use, as `name version`.
 fn locked_version(lock: &str, name: &str) -> Option<String> {
-    let mut lines = lock.lines().skip_while(|line| *line != format!("name = \"{name}\"")).skip(1);
-    let version = lines.next()?.strip_prefix("version = \"")?;
-    Some(version.trim_end_matches('"').to_owned())
+    let package = |name: &str| lock.split("[[package]]").find(|text| text.contains(&format!("\nname = \"{name}\"\n")));
+    let field = |text: &str, key: &str| {
+        let line = text.lines().find_map(|line| line.strip_prefix(&format!("{key} = \"")))?;
+        Some(line.trim_end_matches('"').to_string())
+    };
+    let ours = package(env!("CARGO_PKG_NAME"))?;
+    let named = ours.lines().find_map(|line| line.trim().strip_prefix(&format!("\"{name} ")));
+    match named {
+        Some(rest) => Some(rest.trim_end_matches(',').trim_end_matches('"').split(' ').next()?.to_string()),
+        None => field(package(name)?, "version"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::locked_version;
+
+    #[test]
+    fn the_version_that_we_use_is_recorded() {
+        let lock = "[[package]]\nname = \"a\"\nversion = \"1.0.0\"\n\n[[package]]\nname = \"a\"\nversion = \"2.0.0\"\n\n\
+                    [[package]]\nname = \"b\"\nversion = \"3.0.0\"\n\n\
+                    [[package]]\nname = \"rtbench\"\nversion = \"0\"\ndependencies = [\n \"a 2.0.0\",\n \"b\",\n]\n";
+        assert_eq!(locked_version(lock, "a").as_deref(), Some("2.0.0"));
+        assert_eq!(locked_version(lock, "b").as_deref(), Some("3.0.0"));
+        assert_eq!(locked_version(lock, "c"), None);
+    }
 }
 
 /// For `--version`.
