@@ -86,11 +86,11 @@ fn things_stand_where_they_belong() {
     let lines = lines();
     let rules: [(&str, &[&str], &[&str]); 4] = [
         ("a wgpu type", &["wgpu::"], &["gpu/"]),
-        // Devices time their frames and the registry its builds; the rest is the harness's
+        // Devices time their frames and selections their builds; the rest is the harness's
         (
             "a clock",
             &["Instant::now"],
-            &["bench/", "cpu/backend.rs", "gpu/prepared.rs", "accel/registry.rs", "cli/progress.rs"],
+            &["bench/", "cpu/backend.rs", "gpu/prepared.rs", "accel/selection.rs", "cli/progress.rs"],
         ),
         ("output", &["println!", "print!(", "stdout()", "stderr()"], &["cli/"]),
         ("unsafe code", &["unsafe {", "unsafe fn", "unsafe impl"], &["gpu/device.rs"]),
