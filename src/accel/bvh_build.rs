@@ -2,6 +2,7 @@
 
 use super::bvh::{Bvh, BvhNode, MAX_DEPTH};
 use super::bvh_bins::{Binning, Item, Rows, Splitter};
+use super::bvh_partition::{Sides, centroid_bounds, halve, partition, partition_in_chunks};
 use super::prims::{self, CHUNK, Prim};
 use crate::error::Result;
 use crate::math::Aabb;
@@ -41,18 +42,23 @@ pub fn build(scene: &Scene, config: &Config) -> Result<Bvh> {
     }
     let builder = Builder { config: *config, unit: unit(&bounds) };
     let rows = Rows { min: bounds.min.extend(0.0), max: bounds.max.extend(0.0) };
-    let mut scratch = scratch(items.len());
-    let part = builder.grow(&mut items, &mut scratch, 0, rows, 0);
-    drop(scratch);
+    // All memory at once, shared out below: threads that allocate get into each other's way. A tree of n triangles has
+    // at most 2 n - 2 nodes below its root. Zeroed memory costs nothing until it is touched.
+    let mut scratch: Vec<Item> = bytemuck::zeroed_vec(items.len());
+    let mut pool: Vec<BvhNode> = bytemuck::zeroed_vec(2 * items.len());
+    let part = builder.grow(&mut items, &mut scratch, &mut pool, 0, rows, 0);
     let depth = part.depth;
     let record = |item: &Item| prims::record(scene, item.prim.triangle());
-    let records = items.par_iter().with_min_len(CHUNK).map(record).collect();
-    Ok(Bvh { bounds, nodes: part.into_nodes(), records, depth })
-}
-
-/// Where the right side of a partition waits. Zeroed memory costs nothing until it is touched.
-fn scratch(len: usize) -> Vec<Item> {
-    bytemuck::zeroed_vec(len)
+    let (nodes, records) = rayon::join(
+        || part.into_nodes(),
+        || {
+            // Large vectors take long to free: beside the other thread's work.
+            drop(scratch);
+            items.par_iter().with_min_len(CHUNK).map(record).collect()
+        },
+    );
+    rayon::join(|| drop(items), || drop(pool));
+    Ok(Bvh { bounds, nodes, records, depth })
 }
 
 /// A power of two near 1 over the largest extent: areas in this unit neither overflow nor vanish.
@@ -67,73 +73,69 @@ struct Builder {
 }
 
 /// A finished subtree: its root, and what lies below it.
-struct Part {
+struct Part<'a> {
     root: BvhNode,
-    below: Below,
+    below: Below<'a>,
     depth: u32,
 }
 
-enum Below {
-    /// Pairs of siblings; links count from the start of this vector.
-    Nodes(Vec<BvhNode>),
+enum Below<'a> {
+    /// Pairs of siblings; links count from the start of this slice.
+    Nodes(&'a [BvhNode]),
     /// Two subtrees that were built side by side.
-    Parts(Box<[Part; 2]>),
+    Parts(Box<[Part<'a>; 2]>),
 }
 
-/// Two sides of a split: where the right one begins, and their boxes.
-struct Sides {
-    mid: usize,
-    left: Rows,
-    right: Rows,
+/// What one thread works with on a subtree.
+struct Desk<'s, 'a> {
+    splitter: Splitter,
+    /// As long as the subtree's items. All nodes below use the front of it, so that it stays in the cache.
+    scratch: &'s mut [Item],
+    nodes: &'a mut [BvhNode],
+    used: usize,
 }
 
 impl Builder {
     /// Builds the subtree of `items`, whose records will begin at `first`; sides of large nodes in parallel.
-    fn grow(&self, items: &mut [Item], scratch: &mut [Item], first: u32, bounds: Rows, depth: u32) -> Part {
+    fn grow<'a>(
+        &self,
+        items: &mut [Item],
+        scratch: &mut [Item],
+        nodes: &'a mut [BvhNode],
+        first: u32,
+        bounds: Rows,
+        depth: u32,
+    ) -> Part<'a> {
         let mut splitter = Splitter::new(self.unit);
         if items.len() <= TASK {
-            // A small scratch that stays in the cache, rather than this task's share of the large one.
-            let scratch = &mut self::scratch(items.len())[..];
-            let mut nodes = Vec::with_capacity(items.len());
-            let (root, depth) = self.subtree(items, scratch, first, bounds, depth, &mut splitter, &mut nodes);
-            return Part { root, below: Below::Nodes(nodes), depth };
+            let mut desk = Desk { splitter, scratch, nodes, used: 0 };
+            let (root, depth) = self.subtree(items, first, bounds, depth, &mut desk);
+            return Part { root, below: Below::Nodes(&desk.nodes[..desk.used]), depth };
         }
         let sides = self.divide(items, scratch, depth, &mut splitter);
         let (left, right) = items.split_at_mut(sides.mid);
         let (left_scratch, right_scratch) = scratch.split_at_mut(sides.mid);
+        let (left_nodes, right_nodes) = nodes.split_at_mut(2 * sides.mid);
         let (a, b) = rayon::join(
-            || self.grow(left, left_scratch, first, sides.left, depth + 1),
-            || self.grow(right, right_scratch, first + sides.mid as u32, sides.right, depth + 1),
+            || self.grow(left, left_scratch, left_nodes, first, sides.left, depth + 1),
+            || self.grow(right, right_scratch, right_nodes, first + sides.mid as u32, sides.right, depth + 1),
         );
         let depth = 1 + a.depth.max(b.depth);
         Part { root: BvhNode::inner(&bounds, 0), below: Below::Parts(Box::new([a, b])), depth }
     }
 
-    /// Builds a subtree into `nodes`, depth first; returns its root and its depth.
-    #[allow(clippy::too_many_arguments)]
-    fn subtree(
-        &self,
-        items: &mut [Item],
-        scratch: &mut [Item],
-        first: u32,
-        bounds: Rows,
-        depth: u32,
-        splitter: &mut Splitter,
-        nodes: &mut Vec<BvhNode>,
-    ) -> (BvhNode, u32) {
+    /// Builds a subtree on one thread, depth first; returns its root and its depth.
+    fn subtree(&self, items: &mut [Item], first: u32, bounds: Rows, depth: u32, desk: &mut Desk) -> (BvhNode, u32) {
         if items.len() <= self.config.max_leaf {
             return (BvhNode::leaf(&bounds, first, items.len() as u32), 0);
         }
-        let sides = self.divide(items, scratch, depth, splitter);
-        let pair = nodes.len();
-        nodes.extend([BvhNode::NONE; 2]);
+        let sides = self.divide(items, desk.scratch, depth, &mut desk.splitter);
+        let pair = desk.used;
+        desk.used += 2;
         let (left, right) = items.split_at_mut(sides.mid);
-        let (left_scratch, right_scratch) = scratch.split_at_mut(sides.mid);
-        let (a, a_depth) = self.subtree(left, left_scratch, first, sides.left, depth + 1, splitter, nodes);
-        let mid = first + sides.mid as u32;
-        let (b, b_depth) = self.subtree(right, right_scratch, mid, sides.right, depth + 1, splitter, nodes);
-        nodes[pair] = a;
-        nodes[pair + 1] = b;
+        let (a, a_depth) = self.subtree(left, first, sides.left, depth + 1, desk);
+        let (b, b_depth) = self.subtree(right, first + sides.mid as u32, sides.right, depth + 1, desk);
+        desk.nodes[pair..pair + 2].copy_from_slice(&[a, b]);
         (BvhNode::inner(&bounds, pair as u32), 1 + a_depth.max(b_depth))
     }
 
@@ -144,50 +146,25 @@ impl Builder {
         if depth + halvings >= MAX_DEPTH {
             return halve(items);
         }
-        let mut centroids = Rows::EMPTY;
-        for item in items.iter() {
-            let c = item.centroid3;
-            centroids.grow(c, c);
-        }
+        let centroids = centroid_bounds(items);
         // Most nodes are small. Half the bins do there (bunny: 0.1 % on the cost), since more would stay empty.
         let bins =
             if items.len() <= 2 * self.config.bins { self.config.bins.div_ceil(2).max(2) } else { self.config.bins };
         let binning = Binning::new(&centroids, bins);
         let Some(split) = splitter.find(items, &binning) else { return halve(items) };
-        let mid = partition(items, scratch, |p| binning.of(p)[split.axis] <= split.bin);
+        let goes_left = |item: &Item| binning.of(item)[split.axis] <= split.bin;
+        // While there are fewer subtrees than threads, the idle ones help. The order is the same either way.
+        let mid = if items.len() > 4 * CHUNK && rayon::current_num_threads() >> depth.min(31) > 1 {
+            partition_in_chunks(items, scratch, goes_left)
+        } else {
+            partition(items, scratch, goes_left)
+        };
         debug_assert_eq!(mid, split.left_count);
         Sides { mid, left: split.left, right: split.right }
     }
 }
 
-/// Stable partition without a branch per element: every element is written to both sides, and only one side advances.
-#[inline(always)]
-fn partition(items: &mut [Item], scratch: &mut [Item], goes_left: impl Fn(&Item) -> bool) -> usize {
-    let (mut left, mut right) = (0, 0);
-    for i in 0..items.len() {
-        let item = items[i];
-        let flag = goes_left(&item) as usize;
-        items[left] = item;
-        scratch[right] = item;
-        left += flag;
-        right += 1 - flag;
-    }
-    items[left..].copy_from_slice(&scratch[..right]);
-    left
-}
-
-/// Where the centroids say nothing: half of them each, in the order in which they stand.
-fn halve(items: &[Item]) -> Sides {
-    let mid = items.len() / 2;
-    let around = |items: &[Item]| {
-        let mut rows = Rows::EMPTY;
-        items.iter().for_each(|p| rows.grow(p.prim.min, p.prim.max));
-        rows
-    };
-    Sides { mid, left: around(&items[..mid]), right: around(&items[mid..]) }
-}
-
-impl Part {
+impl Part<'_> {
     fn len(&self) -> usize {
         match &self.below {
             Below::Nodes(nodes) => nodes.len(),
@@ -197,9 +174,9 @@ impl Part {
 
     /// Lays the parts out one after another behind the root pair and moves their links.
     fn into_nodes(self) -> Vec<BvhNode> {
-        let mut nodes = vec![BvhNode::NONE; 2 + self.len()];
+        let mut nodes: Vec<BvhNode> = bytemuck::zeroed_vec(2 + self.len());
         let (pair, rest) = nodes.split_at_mut(2);
-        pair[0] = self.place(rest, 2);
+        pair.copy_from_slice(&[self.place(rest, 2), BvhNode::NONE]);
         nodes
     }
 
@@ -207,7 +184,7 @@ impl Part {
     fn place(self, out: &mut [BvhNode], base: u32) -> BvhNode {
         match self.below {
             Below::Nodes(nodes) => {
-                out.iter_mut().zip(&nodes).for_each(|(out, node)| *out = node.moved(base));
+                out.iter_mut().zip(nodes).for_each(|(out, node)| *out = node.moved(base));
                 self.root.moved(base)
             }
             Below::Parts(parts) => {

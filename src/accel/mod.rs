@@ -7,6 +7,7 @@ pub mod brute;
 pub mod bvh;
 mod bvh_bins;
 pub mod bvh_build;
+mod bvh_partition;
 mod check;
 pub mod grid;
 pub mod grid_build;
