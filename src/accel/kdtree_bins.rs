@@ -92,7 +92,7 @@ impl Counts {
 }
 
 /// The cheapest of the planes between `bins` equal slices of the cell, on any axis.
-pub(super) fn find(prims: &[Prim], cell: &Aabb, bins: usize) -> Option<Split> {
+pub(super) fn find(prims: &[Prim], cell: &Aabb, bins: usize, thin: f32) -> Option<Split> {
     let axes = [0, 1, 2].map(|a| Axis::new(cell.min[a], cell.max[a], bins));
     let guess = Guess::new(cell, bins);
     let count = |chunk: &[Prim]| {
@@ -118,14 +118,21 @@ pub(super) fn find(prims: &[Prim], cell: &Aabb, bins: usize) -> Option<Split> {
     }
     let mut best: Option<Split> = None;
     for a in 0..3 {
-        sweep(a, &axes[a], &total[a], prims.len(), cell, &mut best);
+        sweep(a, &axes[a], &total[a], prims.len(), (cell, thin), &mut best);
     }
     best
 }
 
 /// One sweep over the borders of an axis. Both sides' areas are linear in the plane's coordinate.
-fn sweep(a: usize, axis: &Axis, counts: &Counts, triangles: usize, cell: &Aabb, best: &mut Option<Split>) {
-    let sides = Sides::new(cell, a);
+fn sweep(
+    a: usize,
+    axis: &Axis,
+    counts: &Counts,
+    triangles: usize,
+    (cell, thin): (&Aabb, f32),
+    best: &mut Option<Split>,
+) {
+    let sides = Sides::new(cell, a, thin);
     let (mut left, mut right) = (0, triangles);
     for bin in 1..axis.bins {
         left += counts.begin[bin - 1] as usize;
@@ -144,12 +151,15 @@ pub(super) struct Shares {
     at_min: f32,
     per_length: f32,
     sum: f32,
+    /// Planes outside these would cut off a slice that is too thin: they cost infinitely much.
+    first: f32,
+    last: f32,
 }
 
 impl Shares {
     /// By axis. An axis on which no plane fits into the cell, or shares leave the range of f32, has `max < min`.
     #[inline(always)]
-    pub fn new(cell: &Aabb) -> [Shares; 3] {
+    pub fn new(cell: &Aabb, thin: f32) -> [Shares; 3] {
         // Lengths in units of the longest: their products neither overflow nor vanish.
         let extent = Vec3A::from(cell.max) - Vec3A::from(cell.min);
         let unit = 1.0 / extent.max_element();
@@ -165,19 +175,24 @@ impl Shares {
             at_min: at_min[a],
             per_length: per_length[a],
             sum: 1.0 + at_min[a],
+            first: cell.min[a] + thin,
+            last: cell.max[a] - thin,
         })
     }
 
     /// Expected number of tests: with the share `p` on the left, `p left + (sum - p) right`.
     #[inline(always)]
     pub fn cost(&self, plane: f32, right: f32, left_minus_right: f32) -> f32 {
-        self.sum * right + (self.at_min + self.per_length * (plane - self.min)) * left_minus_right
+        let cost = self.sum * right + (self.at_min + self.per_length * (plane - self.min)) * left_minus_right;
+        if plane < self.first || plane > self.last { f32::INFINITY } else { cost }
     }
 
     /// [`Shares::cost`] of four planes.
     #[inline(always)]
     pub fn costs(&self, planes: Vec4, right: Vec4, left_minus_right: Vec4) -> Vec4 {
-        self.sum * right + (self.at_min + self.per_length * (planes - self.min)) * left_minus_right
+        let costs = self.sum * right + (self.at_min + self.per_length * (planes - self.min)) * left_minus_right;
+        let outside = planes.cmplt(Vec4::splat(self.first)) | planes.cmpgt(Vec4::splat(self.last));
+        Vec4::select(outside, Vec4::INFINITY, costs)
     }
 }
 
@@ -186,6 +201,7 @@ pub(super) struct Sides {
     axis: usize,
     min: f32,
     max: f32,
+    thin: f32,
     /// Area of the plane's section of the cell.
     section: f64,
     /// Half its circumference.
@@ -193,16 +209,18 @@ pub(super) struct Sides {
 }
 
 impl Sides {
-    pub fn new(cell: &Aabb, axis: usize) -> Sides {
+    pub fn new(cell: &Aabb, axis: usize, thin: f32) -> Sides {
         let e = cell.max.as_dvec3() - cell.min.as_dvec3();
         let (u, v) = (e[(axis + 1) % 3], e[(axis + 2) % 3]);
-        Sides { axis, min: cell.min[axis], max: cell.max[axis], section: u * v, rim: u + v }
+        Sides { axis, min: cell.min[axis], max: cell.max[axis], thin, section: u * v, rim: u + v }
     }
 
-    /// Takes the plane if it is cheaper than the best so far; never one on the border of the cell.
+    /// Takes the plane if it is cheaper than the best so far; never one on the border of the cell, or so near it that
+    /// the slice would be too thin.
     #[inline(always)]
     pub fn offer(&self, plane: f32, left: usize, planar: usize, right: usize, best: &mut Option<Split>) {
-        if !(plane > self.min && plane < self.max) {
+        let inside = plane >= self.min + self.thin && plane <= self.max - self.thin;
+        if !(inside && plane > self.min && plane < self.max) {
             return;
         }
         let left_area = self.section + self.rim * (f64::from(plane) - f64::from(self.min));

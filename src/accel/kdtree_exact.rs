@@ -158,7 +158,7 @@ impl Sweep<'_> {
     fn find(&self, node: &Node) -> Option<Cut> {
         let count = node.locals.len();
         let (mut cheapest, mut axis, mut planar_left) = (u64::MAX, 0, true);
-        for (a, shares) in Shares::new(&node.cell).iter().enumerate() {
+        for (a, shares) in Shares::new(&node.cell, self.builder.thin).iter().enumerate() {
             if shares.max < shares.min {
                 continue;
             }

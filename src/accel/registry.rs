@@ -78,7 +78,7 @@ const KD_OPTIONS: &[OptionInfo] = &[
     OptionInfo { key: "bins", default: "32", meaning: "bins per axis in the upper levels", kind: Kind::Count(2, 64) },
     OptionInfo {
         key: "exact_below",
-        default: "512",
+        default: "256",
         meaning: "nodes with fewer triangles are split by the exact sweep",
         kind: Kind::Count(0, 1 << 29),
     },
