@@ -81,6 +81,20 @@ fn locked_version(lock: &str, name: &str) -> Option<String> {
     }
 }
 
+/// For `--version`.
+pub const VERSION: &str = concat!(
+    env!("CARGO_PKG_VERSION"),
+    " (revision ",
+    env!("RTBENCH_GIT_REVISION"),
+    ", changed since: ",
+    env!("RTBENCH_GIT_DIRTY"),
+    "; ",
+    env!("RTBENCH_RUSTC"),
+    "; ",
+    env!("RTBENCH_PROFILE"),
+    ")"
+);
+
 #[cfg(test)]
 mod tests {
     use super::locked_version;
@@ -95,17 +109,3 @@ mod tests {
         assert_eq!(locked_version(lock, "c"), None);
     }
 }
-
-/// For `--version`.
-pub const VERSION: &str = concat!(
-    env!("CARGO_PKG_VERSION"),
-    " (revision ",
-    env!("RTBENCH_GIT_REVISION"),
-    ", changed since: ",
-    env!("RTBENCH_GIT_DIRTY"),
-    "; ",
-    env!("RTBENCH_RUSTC"),
-    "; ",
-    env!("RTBENCH_PROFILE"),
-    ")"
-);
