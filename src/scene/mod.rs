@@ -4,6 +4,7 @@
 //! procedural scene by name; adding a format is one file and one line in [`FORMATS`].
 
 pub mod normals;
+mod options;
 pub mod ply;
 pub mod procedural;
 mod suggest;
@@ -12,6 +13,7 @@ use crate::error::{Error, Result};
 use crate::math::{Aabb, Vertex};
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec3, Vec3A};
+pub use options::{MAX_SEGMENTS, Options, Up};
 pub use procedural::{Parameter, SceneInfo, list};
 use std::path::Path;
 pub(crate) use suggest::did_you_mean;
@@ -22,10 +24,10 @@ pub const MAX_ELEMENTS: usize = 1 << 27;
 
 /// A reader: the scene in a file. It need not set `name`, nor `materials` if the format has none, nor count degenerate
 /// triangles; [`load`] does.
-pub type Reader = fn(&Path) -> Result<Scene>;
+pub type Reader = fn(&Path, &Options) -> Result<Scene>;
 
 /// Readers by file extension (lower case).
-pub const FORMATS: &[(&str, Reader)] = &[("ply", ply::read)];
+pub const FORMATS: &[(&str, Reader)] = &[("ply", |path, _| ply::read(path))];
 
 /// One triangle: three vertices and a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
@@ -93,6 +95,28 @@ impl Light {
     }
 }
 
+/// A camera that stands in a scene file, still or moving.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneCamera {
+    /// Vertical field of view in degrees, between 0 and 180.
+    pub field_of_view: f32,
+    /// One per frame of the file's animation; a single one for a camera that stands still.
+    pub frames: Vec<Pose>,
+}
+
+/// Where a camera is at a moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// In the file's time.
+    pub time: f64,
+    /// Eye.
+    pub position: Vec3,
+    /// Unit vector to the image's middle.
+    pub direction: Vec3,
+    /// Roughly up; not parallel to `direction`.
+    pub up: Vec3,
+}
+
 /// A scene as loaded. Invariants, kept by every reader (see [`Scene::check`]): at least one triangle, all indices in
 /// range, all positions and normals finite, at least one material.
 #[derive(Clone, Debug, Default)]
@@ -111,6 +135,8 @@ pub struct Scene {
     pub background: Vec3,
     /// The file name (without extension) of the camera path in `camera-paths/` that fits, if the scene knows one.
     pub camera_path: Option<String>,
+    /// The camera that the file brings, if it does; it goes before `camera_path`.
+    pub camera: Option<SceneCamera>,
     /// Triangles without area: kept, counted, never hit.
     pub degenerate_triangles: usize,
     /// What the reader wants the user to know, one line each.
@@ -212,6 +238,26 @@ impl Scene {
         if all > 0.0 { (mirrors / all) as f32 } else { 0.0 }
     }
 
+    /// Turns the scene's up to y and scales it, positions, lights and camera alike.
+    fn transform(&mut self, up: Up, scale: f32) {
+        if up == Up::Y && scale == 1.0 {
+            return;
+        }
+        let turn = |v: Vec3| if up == Up::Z { Vec3::new(v.x, v.z, -v.y) } else { v };
+        for vertex in &mut self.vertices {
+            vertex.position = turn(vertex.position) * scale;
+            vertex.normal = turn(vertex.normal);
+        }
+        for light in &mut self.lights {
+            light.position = turn(light.position) * scale;
+        }
+        for pose in self.camera.iter_mut().flat_map(|camera| &mut camera.frames) {
+            pose.position = turn(pose.position) * scale;
+            pose.direction = turn(pose.direction);
+            pose.up = turn(pose.up);
+        }
+    }
+
     /// Gives what a reader may leave open (a material, the number of degenerate triangles) and checks the rest; a fault
     /// comes back as problem and mend.
     fn complete(&mut self) -> Result<(), (String, &'static str)> {
@@ -226,17 +272,19 @@ impl Scene {
     }
 }
 
-/// Loads a scene: a file by its extension, or a procedural scene by `name[:key=value,...]`.
+/// Loads a scene: a file by its extension, or a procedural scene, either as `name[:key=value,...]` (see [`Options`] for
+/// the keys of files).
 ///
 /// `what` is a file if one of that name exists, or if it contains a path separator or ends in a known extension.
 ///
 /// # Errors
 /// [`Error::Input`] for whatever is wrong with the name, the parameters or the file.
 pub fn load(what: &str) -> Result<Scene> {
-    let path = Path::new(what);
+    let (name, settings) = split_settings(what);
+    let path = Path::new(name);
     let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
     let reader = FORMATS.iter().find(|(known, _)| Some(*known) == extension.as_deref()).map(|(_, reader)| reader);
-    let is_file = reader.is_some() || what.contains(['/', std::path::MAIN_SEPARATOR]) || path.exists();
+    let is_file = reader.is_some() || name.contains(['/', std::path::MAIN_SEPARATOR]) || path.exists();
     if !is_file {
         let mut scene = procedural::build(what)?;
         scene.complete().map_err(|(problem, mend)| Error::argument(what, problem, mend))?;
@@ -254,12 +302,23 @@ pub fn load(what: &str) -> Result<Scene> {
             format!("known extensions: {}", known.join(", ")),
         ));
     };
-    let mut scene = reader(path)?;
+    let options = Options::parse(what, settings)?;
+    let mut scene = reader(path, &options)?;
+    scene.transform(options.up, options.scale);
     if scene.name.is_empty() {
-        scene.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        scene.name = format!("{stem}{}", options.suffix());
     }
     scene.complete().map_err(|(problem, mend)| Error::file(path, None, problem, mend))?;
     Ok(scene)
+}
+
+/// Name or path, and what follows its last colon if that is `key=value,...`; a file may have a colon in its name.
+fn split_settings(what: &str) -> (&str, &str) {
+    match what.rsplit_once(':') {
+        Some((name, settings)) if settings.contains('=') && !Path::new(what).exists() => (name, settings),
+        _ => (what, ""),
+    }
 }
 
 /// The bytes of a file.

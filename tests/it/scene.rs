@@ -114,3 +114,31 @@ fn the_content_hash_sees_every_part_and_no_name() {
     let renamed = Scene { name: "other".into(), ..scene };
     assert_eq!(renamed.content_hash(), hash);
 }
+
+#[test]
+fn a_file_takes_options_behind_its_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("cube.ply");
+    std::fs::write(&path, ply::CUBE).unwrap();
+    let file = path.to_str().unwrap();
+    let plain = scene::load(file).unwrap();
+    let turned = scene::load(&format!("{file}:up=z,scale=2")).unwrap();
+    assert_eq!((plain.name.as_str(), turned.name.as_str()), ("cube", "cube:up=z,scale=2"));
+    let v = |scene: &Scene, i: usize| scene.vertices[i].position;
+    for i in 0..plain.vertices.len() {
+        let p = v(&plain, i);
+        assert_eq!(v(&turned, i), glam::Vec3::new(p.x, p.z, -p.y) * 2.0);
+    }
+    for (settings, words) in [
+        ("tim=3", "did you mean time?"),
+        ("time=soon", "`soon` does not do"),
+        ("segments=2", "3 to 1024"),
+        ("up=x", "y or z"),
+        ("scale=-1", "positive"),
+        ("scale=inf", "positive"),
+        ("outside=maybe", "yes or no"),
+    ] {
+        let message = refusal(scene::load(&format!("{file}:{settings}")));
+        assert!(message.contains(words), "{settings}: {message}");
+    }
+}

@@ -1,0 +1,104 @@
+//! What may be chosen when a file is read: the same few options for every format.
+
+use super::did_you_mean;
+use crate::error::{Error, Result};
+
+/// How a file is to be read. A reader heeds what means something in its format; [`super::load`] applies the rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// The moment, in the file's time, at which moving geometry is frozen; `None`: where its animation begins.
+    pub time: Option<f64>,
+    /// Segments around a sphere, cone or other curved surface; `None`: the format's default.
+    pub segments: Option<u32>,
+    /// True if includes may leave the folder of the file that is named.
+    pub outside: bool,
+    /// Which way is up in the file; the loaded scene's up is y.
+    pub up: Up,
+    /// Factor on all lengths, applied last.
+    pub scale: f32,
+}
+
+/// An axis that points up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Up {
+    /// Nothing to do.
+    #[default]
+    Y,
+    /// As in most of MGF and in CAD: (x, y, z) becomes (x, z, -y).
+    Z,
+}
+
+impl Default for Options {
+    fn default() -> Options {
+        Options { time: None, segments: None, outside: false, up: Up::Y, scale: 1.0 }
+    }
+}
+
+/// Most segments of a curved surface.
+pub const MAX_SEGMENTS: u32 = 1024;
+
+impl Options {
+    /// The names of all options.
+    pub const KEYS: [&str; 5] = ["time", "segments", "outside", "up", "scale"];
+
+    /// Reads `key=value,...`; `what` stands in errors.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for the first unknown key or bad value.
+    pub fn parse(what: &str, settings: &str) -> Result<Options> {
+        let mut options = Options::default();
+        for setting in settings.split(',').filter(|s| !s.is_empty()) {
+            let (key, value) = setting.split_once('=').unwrap_or((setting, ""));
+            let wrong = |mend: &str| Error::argument(what, format!("{key}: `{value}` does not do"), mend);
+            match key {
+                "time" => match value.parse() {
+                    Ok(time) if f64::is_finite(time) => options.time = Some(time),
+                    _ => return Err(wrong("give a moment of the file's animation, as time=3")),
+                },
+                "segments" => match value.parse() {
+                    Ok(segments) if (3..=MAX_SEGMENTS).contains(&segments) => options.segments = Some(segments),
+                    _ => return Err(wrong("give 3 to 1024")),
+                },
+                "outside" => match value {
+                    "yes" | "no" => options.outside = value == "yes",
+                    _ => return Err(wrong("give yes or no")),
+                },
+                "up" => match value {
+                    "y" => options.up = Up::Y,
+                    "z" => options.up = Up::Z,
+                    _ => return Err(wrong("give y or z")),
+                },
+                "scale" => match value.parse() {
+                    Ok(scale) if (1e-20..=1e20).contains(&scale) => options.scale = scale,
+                    _ => return Err(wrong("give a positive number")),
+                },
+                _ => {
+                    let problem = format!("scene files have no option `{key}`");
+                    return Err(Error::argument(what, problem, did_you_mean(key, &Self::KEYS)));
+                }
+            }
+        }
+        Ok(options)
+    }
+
+    /// The options that differ from their defaults, `:key=value,...`, or nothing.
+    pub fn suffix(&self) -> String {
+        let mut set = Vec::new();
+        if let Some(time) = self.time {
+            set.push(format!("time={time}"));
+        }
+        if let Some(segments) = self.segments {
+            set.push(format!("segments={segments}"));
+        }
+        if self.outside {
+            set.push("outside=yes".into());
+        }
+        if self.up == Up::Z {
+            set.push("up=z".into());
+        }
+        if self.scale != 1.0 {
+            set.push(format!("scale={}", self.scale));
+        }
+        if set.is_empty() { String::new() } else { format!(":{}", set.join(",")) }
+    }
+}
