@@ -2,7 +2,7 @@
 
 use super::bvh::{Bvh, BvhNode, MAX_DEPTH};
 use super::bvh_bins::{Binning, Item, Rows, Splitter};
-use super::bvh_partition::{Sides, centroid_bounds, halve, partition, partition_in_chunks};
+use super::bvh_partition::{Partitioner, Sides, centroid_bounds, halve};
 use super::prims::{self, CHUNK, Prim};
 use crate::error::Result;
 use crate::math::Aabb;
@@ -42,22 +42,17 @@ pub fn build(scene: &Scene, config: &Config) -> Result<Bvh> {
     }
     let builder = Builder { config: *config, unit: unit(&bounds) };
     let rows = Rows { min: bounds.min.extend(0.0), max: bounds.max.extend(0.0) };
-    // All memory at once, shared out below: threads that allocate get into each other's way. A tree of n triangles has
-    // at most 2 n - 2 nodes below its root. Zeroed memory costs nothing until it is touched.
-    let mut scratch: Vec<Item> = bytemuck::zeroed_vec(items.len());
-    let mut pool: Vec<BvhNode> = bytemuck::zeroed_vec(2 * items.len());
-    let part = builder.grow(&mut items, &mut scratch, &mut pool, 0, rows, 0);
+    let part = builder.grow(&mut items, 0, rows, 0);
     let depth = part.depth;
     let record = |item: &Item| prims::record(scene, item.prim.triangle());
     let (nodes, records) = rayon::join(
         || part.into_nodes(),
         || {
-            // Large vectors take long to free: beside the other thread's work.
-            drop(scratch);
-            items.par_iter().with_min_len(CHUNK).map(record).collect()
+            let records = items.par_iter().with_min_len(CHUNK).map(record).collect();
+            drop(items);
+            records
         },
     );
-    rayon::join(|| drop(items), || drop(pool));
     Ok(Bvh { bounds, nodes, records, depth })
 }
 
@@ -73,52 +68,43 @@ struct Builder {
 }
 
 /// A finished subtree: its root, and what lies below it.
-struct Part<'a> {
+struct Part {
     root: BvhNode,
-    below: Below<'a>,
+    below: Below,
     depth: u32,
 }
 
-enum Below<'a> {
-    /// Pairs of siblings; links count from the start of this slice.
-    Nodes(&'a [BvhNode]),
+enum Below {
+    /// Pairs of siblings; links count from the start of this vector.
+    Nodes(Vec<BvhNode>),
     /// Two subtrees that were built side by side.
-    Parts(Box<[Part<'a>; 2]>),
+    Parts(Box<[Part; 2]>),
 }
 
 /// What one thread works with on a subtree.
-struct Desk<'s, 'a> {
+struct Desk {
     splitter: Splitter,
-    /// As long as the subtree's items. All nodes below use the front of it, so that it stays in the cache.
-    scratch: &'s mut [Item],
-    nodes: &'a mut [BvhNode],
-    used: usize,
+    partitioner: Partitioner,
+    nodes: Vec<BvhNode>,
 }
 
 impl Builder {
     /// Builds the subtree of `items`, whose records will begin at `first`; sides of large nodes in parallel.
-    fn grow<'a>(
-        &self,
-        items: &mut [Item],
-        scratch: &mut [Item],
-        nodes: &'a mut [BvhNode],
-        first: u32,
-        bounds: Rows,
-        depth: u32,
-    ) -> Part<'a> {
-        let mut splitter = Splitter::new(self.unit);
+    fn grow(&self, items: &mut [Item], first: u32, bounds: Rows, depth: u32) -> Part {
+        let mut desk = Desk {
+            splitter: Splitter::new(self.unit),
+            partitioner: Partitioner::new(),
+            nodes: Vec::with_capacity(if items.len() <= TASK { items.len() / 4 * 3 } else { 0 }),
+        };
         if items.len() <= TASK {
-            let mut desk = Desk { splitter, scratch, nodes, used: 0 };
             let (root, depth) = self.subtree(items, first, bounds, depth, &mut desk);
-            return Part { root, below: Below::Nodes(&desk.nodes[..desk.used]), depth };
+            return Part { root, below: Below::Nodes(desk.nodes), depth };
         }
-        let sides = self.divide(items, scratch, depth, &mut splitter);
+        let sides = self.divide(items, depth, &mut desk);
         let (left, right) = items.split_at_mut(sides.mid);
-        let (left_scratch, right_scratch) = scratch.split_at_mut(sides.mid);
-        let (left_nodes, right_nodes) = nodes.split_at_mut(2 * sides.mid);
         let (a, b) = rayon::join(
-            || self.grow(left, left_scratch, left_nodes, first, sides.left, depth + 1),
-            || self.grow(right, right_scratch, right_nodes, first + sides.mid as u32, sides.right, depth + 1),
+            || self.grow(left, first, sides.left, depth + 1),
+            || self.grow(right, first + sides.mid as u32, sides.right, depth + 1),
         );
         let depth = 1 + a.depth.max(b.depth);
         Part { root: BvhNode::inner(&bounds, 0), below: Below::Parts(Box::new([a, b])), depth }
@@ -129,9 +115,9 @@ impl Builder {
         if items.len() <= self.config.max_leaf {
             return (BvhNode::leaf(&bounds, first, items.len() as u32), 0);
         }
-        let sides = self.divide(items, desk.scratch, depth, &mut desk.splitter);
-        let pair = desk.used;
-        desk.used += 2;
+        let sides = self.divide(items, depth, desk);
+        let pair = desk.nodes.len();
+        desk.nodes.extend([BvhNode::NONE; 2]);
         let (left, right) = items.split_at_mut(sides.mid);
         let (a, a_depth) = self.subtree(left, first, sides.left, depth + 1, desk);
         let (b, b_depth) = self.subtree(right, first + sides.mid as u32, sides.right, depth + 1, desk);
@@ -140,7 +126,7 @@ impl Builder {
     }
 
     /// Reorders `items` into two non-empty sides.
-    fn divide(&self, items: &mut [Item], scratch: &mut [Item], depth: u32, splitter: &mut Splitter) -> Sides {
+    fn divide(&self, items: &mut [Item], depth: u32, desk: &mut Desk) -> Sides {
         // Halving from here on would just keep within the greatest depth: no more adventures.
         let halvings = usize::BITS - items.len().leading_zeros();
         if depth + halvings >= MAX_DEPTH {
@@ -148,23 +134,17 @@ impl Builder {
         }
         let centroids = centroid_bounds(items);
         // Most nodes are small. Half the bins do there (bunny: 0.1 % on the cost), since more would stay empty.
-        let bins =
-            if items.len() <= 2 * self.config.bins { self.config.bins.div_ceil(2).max(2) } else { self.config.bins };
+        let Config { bins, .. } = self.config;
+        let bins = if items.len() <= 2 * bins { bins.div_ceil(2).max(2) } else { bins };
         let binning = Binning::new(&centroids, bins);
-        let Some(split) = splitter.find(items, &binning) else { return halve(items) };
-        let goes_left = |item: &Item| binning.of(item)[split.axis] <= split.bin;
-        // While there are fewer subtrees than threads, the idle ones help. The order is the same either way.
-        let mid = if items.len() > 4 * CHUNK && rayon::current_num_threads() >> depth.min(31) > 1 {
-            partition_in_chunks(items, scratch, goes_left)
-        } else {
-            partition(items, scratch, goes_left)
-        };
+        let Some(split) = desk.splitter.find(items, &binning) else { return halve(items) };
+        let mid = desk.partitioner.run(items, |item| binning.of(item)[split.axis] <= split.bin);
         debug_assert_eq!(mid, split.left_count);
         Sides { mid, left: split.left, right: split.right }
     }
 }
 
-impl Part<'_> {
+impl Part {
     fn len(&self) -> usize {
         match &self.below {
             Below::Nodes(nodes) => nodes.len(),
@@ -184,7 +164,7 @@ impl Part<'_> {
     fn place(self, out: &mut [BvhNode], base: u32) -> BvhNode {
         match self.below {
             Below::Nodes(nodes) => {
-                out.iter_mut().zip(nodes).for_each(|(out, node)| *out = node.moved(base));
+                out.iter_mut().zip(&nodes).for_each(|(out, node)| *out = node.moved(base));
                 self.root.moved(base)
             }
             Below::Parts(parts) => {

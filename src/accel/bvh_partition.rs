@@ -29,45 +29,84 @@ pub(super) fn centroid_bounds(items: &[Item]) -> Rows {
     })
 }
 
-/// Stable partition without a branch per element: every element is written to both sides, and only one side advances.
-#[inline(always)]
-pub(super) fn partition(items: &mut [Item], scratch: &mut [Item], goes_left: impl Fn(&Item) -> bool) -> usize {
-    let (mut left, mut right) = (0, 0);
-    for i in 0..items.len() {
-        let item = items[i];
-        let flag = goes_left(&item) as usize;
-        items[left] = item;
-        scratch[right] = item;
-        left += flag;
-        right += 1 - flag;
-    }
-    items[left..].copy_from_slice(&scratch[..right]);
-    left
+/// Items looked at together by the partition of large nodes; offsets must fit into a byte.
+const BLOCK: usize = 128;
+
+/// Reorders items into those that go left and the others, in place and without a branch that depends on the items.
+pub(super) struct Partitioner {
+    /// Where the right side of a small node waits. Small enough for the fastest cache, and to be touched only once.
+    scratch: [Item; 2 * BLOCK],
+    /// Offsets of the misplaced items in the block at the left end, and in that at the right end.
+    misplaced: [[u8; BLOCK]; 2],
 }
 
-/// The same partition by all threads: count, give every chunk its two places, and copy back.
-pub(super) fn partition_in_chunks(
-    items: &mut [Item],
-    scratch: &mut [Item],
-    goes_left: impl Fn(&Item) -> bool + Sync,
-) -> usize {
-    let counts: Vec<usize> =
-        items.par_chunks(CHUNK).map(|chunk| chunk.iter().filter(|item| goes_left(item)).count()).collect();
-    let mid = counts.iter().sum();
-    let (mut left, mut right) = scratch.split_at_mut(mid);
-    let mut places = Vec::with_capacity(counts.len());
-    for (chunk, count) in items.chunks(CHUNK).zip(counts) {
-        places.push((left.split_off_mut(..count), right.split_off_mut(..chunk.len() - count)));
+impl Partitioner {
+    pub fn new() -> Partitioner {
+        Partitioner { scratch: [Item::NONE; 2 * BLOCK], misplaced: [[0; BLOCK]; 2] }
     }
-    items.par_chunks(CHUNK).zip(places).for_each(|(chunk, (left, right))| {
-        let (mut left, mut right) = (left.into_iter().flatten(), right.into_iter().flatten());
-        for item in chunk {
-            let place = if goes_left(item) { left.next() } else { right.next() };
-            *place.expect("counted before") = *item;
+
+    /// Returns how many go left.
+    ///
+    /// After S. Edelkamp and A. Weiss: BlockQuicksort, 2016: collects the misplaced items of one block at either end,
+    /// swaps them pairwise, and moves on from the block that has none left.
+    #[inline(always)]
+    pub fn run(&mut self, items: &mut [Item], goes_left: impl Fn(&Item) -> bool) -> usize {
+        let (mut from, mut to) = (0, items.len());
+        // How many of the collected offsets have been used, and how many there are.
+        let mut pending = [(0, 0); 2];
+        while to - from > 2 * BLOCK {
+            if pending[0].0 == pending[0].1 {
+                let block = &items[from..from + BLOCK];
+                pending[0] = (0, collect(&mut self.misplaced[0], block.iter().map(|item| !goes_left(item))));
+            }
+            if pending[1].0 == pending[1].1 {
+                let block = &items[to - BLOCK..to];
+                pending[1] = (0, collect(&mut self.misplaced[1], block.iter().rev().map(&goes_left)));
+            }
+            let swaps = (pending[0].1 - pending[0].0).min(pending[1].1 - pending[1].0);
+            for i in 0..swaps {
+                let left = self.misplaced[0][pending[0].0 + i] as usize;
+                let right = self.misplaced[1][pending[1].0 + i] as usize;
+                items.swap(from + left, to - 1 - right);
+            }
+            pending = pending.map(|(used, all)| (used + swaps, all));
+            if pending[0].0 == pending[0].1 {
+                from += BLOCK;
+            }
+            if pending[1].0 == pending[1].1 {
+                to -= BLOCK;
+            }
         }
-    });
-    items.par_chunks_mut(CHUNK).zip(scratch.par_chunks(CHUNK)).for_each(|(to, from)| to.copy_from_slice(from));
-    mid
+        // What is left may contain a block that is partly done: it does not matter which part.
+        from + self.small(&mut items[from..to], goes_left)
+    }
+
+    /// Stable, for few items: every item is written to both sides, and only one side advances.
+    #[inline(always)]
+    fn small(&mut self, items: &mut [Item], goes_left: impl Fn(&Item) -> bool) -> usize {
+        let (mut left, mut right) = (0, 0);
+        for i in 0..items.len() {
+            let item = items[i];
+            let flag = goes_left(&item) as usize;
+            items[left] = item;
+            self.scratch[right] = item;
+            left += flag;
+            right += 1 - flag;
+        }
+        items[left..].copy_from_slice(&self.scratch[..right]);
+        left
+    }
+}
+
+/// Lists the positions of the true flags; returns how many there are.
+#[inline(always)]
+fn collect(positions: &mut [u8; BLOCK], flags: impl Iterator<Item = bool>) -> usize {
+    let mut count = 0;
+    for (i, flag) in flags.take(BLOCK).enumerate() {
+        positions[count] = i as u8;
+        count += usize::from(flag);
+    }
+    count
 }
 
 /// Where the centroids say nothing: half of them each, in the order in which they stand.
