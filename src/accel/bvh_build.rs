@@ -4,6 +4,7 @@ use super::bvh::{Bvh, BvhNode, MAX_DEPTH};
 use super::bvh_bins::{Binning, Item, Rows, Splitter};
 use super::bvh_partition::{Partitioner, Sides, centroid_bounds, halve};
 use super::prims::{self, CHUNK, Prim};
+use super::sah::unit;
 use crate::error::Result;
 use crate::math::Aabb;
 use crate::scene::Scene;
@@ -54,12 +55,6 @@ pub fn build(scene: &Scene, config: &Config) -> Result<Bvh> {
         },
     );
     Ok(Bvh { bounds, nodes, records, depth })
-}
-
-/// A power of two near 1 over the largest extent: areas in this unit neither overflow nor vanish.
-fn unit(bounds: &Aabb) -> f32 {
-    let extent = (bounds.max.as_dvec3() - bounds.min.as_dvec3()).max_element();
-    if extent > 0.0 { extent.log2().floor().clamp(-120.0, 120.0).exp2().recip() as f32 } else { 1.0 }
 }
 
 struct Builder {

@@ -6,7 +6,7 @@
 use super::kdtree_build::Split;
 use super::prims::{CHUNK, Prim};
 use crate::math::Aabb;
-use glam::{Vec3, Vec3A, Vec4};
+use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
 /// Most bins per axis.
@@ -91,13 +91,14 @@ impl Counts {
     }
 }
 
-/// The cheapest of the planes between `bins` equal slices of the cell, on any axis.
-pub(super) fn find(prims: &[Prim], cell: &Aabb, bins: usize, thin: f32) -> Option<Split> {
+/// The cheapest, for the triangles `own` (numbers in `prims`), of the planes between `bins` equal slices of the cell, on
+/// any axis; none that cuts off less than `thin`.
+pub(super) fn find(prims: &[Prim], own: &[u32], cell: &Aabb, bins: usize, thin: f32) -> Option<Split> {
     let axes = [0, 1, 2].map(|a| Axis::new(cell.min[a], cell.max[a], bins));
     let guess = Guess::new(cell, bins);
-    let count = |chunk: &[Prim]| {
+    let count = |chunk: &[u32]| {
         let mut counts = [Counts::ZERO; 3];
-        for prim in chunk {
+        for prim in chunk.iter().map(|&i| &prims[i as usize]) {
             let (min_guess, max_guess) = (guess.of(prim.min), guess.of(prim.max));
             for (a, (axis, counts)) in axes.iter().zip(&mut counts).enumerate() {
                 let (begin, top) = (axis.bin(prim.min[a], min_guess[a]), axis.bin(prim.max[a], max_guess[a]));
@@ -113,26 +114,18 @@ pub(super) fn find(prims: &[Prim], cell: &Aabb, bins: usize, thin: f32) -> Optio
         counts
     };
     let mut total = [Counts::ZERO; 3];
-    for part in prims.par_chunks(4 * CHUNK).map(count).collect::<Vec<_>>() {
+    for part in own.par_chunks(4 * CHUNK).map(count).collect::<Vec<_>>() {
         total.iter_mut().zip(&part).for_each(|(total, part)| total.merge(part));
     }
     let mut best: Option<Split> = None;
     for a in 0..3 {
-        sweep(a, &axes[a], &total[a], prims.len(), (cell, thin), &mut best);
+        sweep(&axes[a], &total[a], own.len(), &Sides::new(cell, a, thin), &mut best);
     }
     best
 }
 
 /// One sweep over the borders of an axis. Both sides' areas are linear in the plane's coordinate.
-fn sweep(
-    a: usize,
-    axis: &Axis,
-    counts: &Counts,
-    triangles: usize,
-    (cell, thin): (&Aabb, f32),
-    best: &mut Option<Split>,
-) {
-    let sides = Sides::new(cell, a, thin);
+fn sweep(axis: &Axis, counts: &Counts, triangles: usize, sides: &Sides, best: &mut Option<Split>) {
     let (mut left, mut right) = (0, triangles);
     for bin in 1..axis.bins {
         left += counts.begin[bin - 1] as usize;
@@ -143,57 +136,62 @@ fn sweep(
     }
 }
 
-/// For sweeps in f32. The left side's share of a cell's area is `at_min + per_length * (plane - min)`; both shares
-/// together make `sum`, which is more than 1 since the plane itself counts twice.
-pub(super) struct Shares {
-    pub min: f32,
-    pub max: f32,
-    at_min: f32,
-    per_length: f32,
-    sum: f32,
-    /// Planes outside these would cut off a slice that is too thin: they cost infinitely much.
-    first: f32,
-    last: f32,
+/// For sweeps in f32: the area on the left of a plane is `section + rim * (plane - min)`; those on both sides together
+/// are `both`, which is more than the cell's since the plane itself counts twice. Nothing is divided here.
+pub(super) struct Areas {
+    min: f32,
+    max: f32,
+    thin: f32,
+    section: f32,
+    rim: f32,
+    both: f32,
 }
 
-impl Shares {
-    /// By axis. An axis on which no plane fits into the cell, or shares leave the range of f32, has `max < min`.
+impl Areas {
+    /// By axis; and the area of the cell in the same units, `None` if it is none.
+    ///
+    /// `unit` is about 1 over the extent of some larger cell: with it, products of lengths neither overflow nor vanish.
+    /// Planes that cut off less than `thin` are not [`Areas::allows`]ed.
     #[inline(always)]
-    pub fn new(cell: &Aabb, thin: f32) -> [Shares; 3] {
-        // Lengths in units of the longest: their products neither overflow nor vanish.
-        let extent = Vec3A::from(cell.max) - Vec3A::from(cell.min);
-        let unit = 1.0 / extent.max_element();
-        let e = extent * unit;
-        let (u, v) = (Vec3A::new(e.y, e.z, e.x), Vec3A::new(e.z, e.x, e.y));
-        let per_area = 1.0 / e.dot(u);
-        let (at_min, per_length) = (u * v * per_area, (u + v) * (per_area * unit));
-        // An area of zero makes one of these infinite or NaN.
-        let usable = extent.cmpgt(Vec3A::ZERO) & (at_min + per_length + extent).cmplt(Vec3A::INFINITY);
-        [0, 1, 2].map(|a| Shares {
+    pub fn new(cell: &Aabb, unit: f32, thin: f32) -> Option<([Areas; 3], f32)> {
+        let [x, y, z] = ((cell.max - cell.min) * unit).to_array();
+        let areas = |a: usize, section: f32, rim: f32, area: f32| Areas {
             min: cell.min[a],
-            max: if usable.test(a) { cell.max[a] } else { f32::NEG_INFINITY },
-            at_min: at_min[a],
-            per_length: per_length[a],
-            sum: 1.0 + at_min[a],
-            first: cell.min[a] + thin,
-            last: cell.max[a] - thin,
-        })
+            max: cell.max[a],
+            thin,
+            section,
+            rim: rim * unit,
+            both: area + section,
+        };
+        let (yz, zx, xy) = (y * z, z * x, x * y);
+        let area = yz + zx + xy;
+        let of = [areas(0, yz, y + z, area), areas(1, zx, z + x, area), areas(2, xy, x + y, area)];
+        (area > 0.0 && area < f32::INFINITY).then_some((of, area))
     }
 
-    /// Expected number of tests: with the share `p` on the left, `p left + (sum - p) right`.
+    /// True if the plane lies inside the cell, and not too near to its border.
+    #[inline(always)]
+    pub fn allows(&self, plane: f32) -> bool {
+        inside(plane, self.min, self.max, self.thin)
+    }
+
+    /// Area times tests on both sides of a plane: `left_area left + right_area right`.
     #[inline(always)]
     pub fn cost(&self, plane: f32, right: f32, left_minus_right: f32) -> f32 {
-        let cost = self.sum * right + (self.at_min + self.per_length * (plane - self.min)) * left_minus_right;
-        if plane < self.first || plane > self.last { f32::INFINITY } else { cost }
+        self.both * right + (self.section + self.rim * (plane - self.min)) * left_minus_right
     }
 
-    /// [`Shares::cost`] of four planes.
+    /// [`Areas::cost`] of four planes.
     #[inline(always)]
     pub fn costs(&self, planes: Vec4, right: Vec4, left_minus_right: Vec4) -> Vec4 {
-        let costs = self.sum * right + (self.at_min + self.per_length * (planes - self.min)) * left_minus_right;
-        let outside = planes.cmplt(Vec4::splat(self.first)) | planes.cmpgt(Vec4::splat(self.last));
-        Vec4::select(outside, Vec4::INFINITY, costs)
+        self.both * right + (self.section + self.rim * (planes - self.min)) * left_minus_right
     }
+}
+
+/// True if the plane cuts at least `thin` off the cell on both sides, and is not its border.
+#[inline(always)]
+fn inside(plane: f32, min: f32, max: f32, thin: f32) -> bool {
+    min < plane && plane < max && min + thin <= plane && plane <= max - thin
 }
 
 /// The areas of both sides of a plane, as functions of its coordinate.
@@ -215,12 +213,10 @@ impl Sides {
         Sides { axis, min: cell.min[axis], max: cell.max[axis], thin, section: u * v, rim: u + v }
     }
 
-    /// Takes the plane if it is cheaper than the best so far; never one on the border of the cell, or so near it that
-    /// the slice would be too thin.
+    /// Takes the plane if it is cheaper than the best so far; never one on the border of the cell, or too near to it.
     #[inline(always)]
     pub fn offer(&self, plane: f32, left: usize, planar: usize, right: usize, best: &mut Option<Split>) {
-        let inside = plane >= self.min + self.thin && plane <= self.max - self.thin;
-        if !(inside && plane > self.min && plane < self.max) {
+        if !inside(plane, self.min, self.max, self.thin) {
             return;
         }
         let left_area = self.section + self.rim * (f64::from(plane) - f64::from(self.min));

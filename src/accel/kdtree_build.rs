@@ -70,51 +70,56 @@ pub(super) struct Builder {
     pub max_depth: u32,
     /// No cell is cut thinner than this, see [`THINNEST`].
     pub thin: f32,
+    /// So few triangles cost no more than a step.
+    never_split: usize,
     spent: AtomicUsize,
 }
 
 impl Builder {
     /// True if a node must be a leaf, whatever its splits would cost.
     pub fn must_stop(&self, triangles: usize, depth: u32) -> bool {
+        depth >= self.max_depth || triangles <= self.never_split
+    }
+
+    /// True if a split is cheaper than testing the triangles of a cell of this area; `weighted` is the sum over both
+    /// sides of area times triangles.
+    pub fn pays(&self, triangles: usize, weighted: f64, area: f64) -> bool {
         let cost = &self.config.cost;
-        depth >= self.max_depth || cost.leaf(triangles as u32) <= cost.traversal || self.is_broke()
+        cost.traversal * area + cost.intersection * weighted < cost.leaf(triangles as u32) * area
     }
 
-    /// True if a split is cheaper than testing the cell's triangles; `tests` are expected behind it.
-    pub fn pays(&self, triangles: usize, tests: f64) -> bool {
-        let cost = &self.config.cost;
-        cost.traversal + cost.intersection * tests < cost.leaf(triangles as u32)
+    /// Accounts for leaves and records.
+    pub fn spend(&self, leaves_and_records: usize) {
+        self.spent.fetch_add(leaves_and_records, Relaxed);
     }
 
-    /// Accounts for a leaf.
-    pub fn spend(&self, triangles: usize) {
-        self.spent.fetch_add(1 + triangles, Relaxed);
-    }
-
-    fn is_broke(&self) -> bool {
+    /// True if the tree has become too large: whatever is still built is thrown away.
+    pub fn is_broke(&self) -> bool {
         self.spent.load(Relaxed) > MAX_LEAVES_AND_RECORDS
     }
 
-    fn grow(&self, prims: Vec<Prim>, cell: Aabb, depth: u32) -> Part {
-        let count = prims.len();
+    /// Builds the subtree of the triangles `own` (numbers in `prims`, ascending).
+    fn grow(&self, prims: &[Prim], own: Vec<u32>, cell: Aabb, depth: u32) -> Part {
+        let count = own.len();
         if count < self.config.exact_below {
+            let prims: Vec<Prim> = own.iter().map(|&i| prims[i as usize]).collect();
             return Part::Subtree(kdtree_exact::build(self, &prims, cell, depth));
         }
-        let split = if self.must_stop(count, depth) {
+        let split = if self.must_stop(count, depth) || self.is_broke() {
             None
         } else {
-            kdtree_bins::find(&prims, &cell, self.config.bins, self.thin)
-                .filter(|split| self.pays(count, split.weighted / half_area(&cell)))
+            kdtree_bins::find(prims, &own, &cell, self.config.bins, self.thin)
+                .filter(|split| self.pays(count, split.weighted, half_area(&cell)))
         };
         let Some(split) = split else {
-            self.spend(count);
-            return Part::Subtree(Subtree::leaf(&prims));
+            self.spend(1 + count);
+            return Part::Subtree(Subtree::leaf(prims, &own));
         };
-        let (left, right) = divide(&prims, &split);
-        drop(prims);
+        let (left, right) = divide(prims, &own, &split);
+        drop(own);
         let (left_cell, right_cell) = halves(&cell, split.axis, split.plane);
-        let a = || self.grow(left, left_cell, depth + 1);
-        let b = || self.grow(right, right_cell, depth + 1);
+        let a = || self.grow(prims, left, left_cell, depth + 1);
+        let b = || self.grow(prims, right, right_cell, depth + 1);
         let parts = if split.left + split.right > TASK { rayon::join(a, b) } else { (a(), b()) };
         Part::Inner(split.axis, split.plane, Box::new(parts))
     }
@@ -122,15 +127,16 @@ impl Builder {
 
 /// Both sides' triangles, in their order. Every triangle is written to both, and only the sides that it belongs to
 /// advance (each has room for one more): no branch to mispredict.
-fn divide(prims: &[Prim], split: &Split) -> (Vec<Prim>, Vec<Prim>) {
+fn divide(prims: &[Prim], own: &[u32], split: &Split) -> (Vec<u32>, Vec<u32>) {
     let Split { axis, plane, planar_left, .. } = *split;
-    let (mut left, mut right) = (vec![Prim::NONE; split.left + 1], vec![Prim::NONE; split.right + 1]);
+    let (mut left, mut right) = (vec![0; split.left + 1], vec![0; split.right + 1]);
     let (mut left_count, mut right_count) = (0, 0);
-    for prim in prims {
+    for &i in own {
+        let prim = &prims[i as usize];
         let (min, max) = (prim.min[axis], prim.max[axis]);
         let planar = (min == plane) & (max == plane);
-        left[left_count] = *prim;
-        right[right_count] = *prim;
+        left[left_count] = i;
+        right[right_count] = i;
         left_count += usize::from((min < plane) | (planar & planar_left));
         right_count += usize::from((max > plane) | (planar & !planar_left));
     }
@@ -159,8 +165,8 @@ pub(super) struct Subtree {
 }
 
 impl Subtree {
-    fn leaf(prims: &[Prim]) -> Subtree {
-        let triangles: Vec<u32> = prims.iter().map(Prim::triangle).collect();
+    fn leaf(prims: &[Prim], own: &[u32]) -> Subtree {
+        let triangles: Vec<u32> = own.iter().map(|&i| prims[i as usize].triangle()).collect();
         Subtree { nodes: vec![KdNode::leaf(0, triangles.len() as u32)], triangles, depth: 0 }
     }
 }
@@ -225,9 +231,10 @@ pub fn build(scene: &Scene, config: &Config) -> Result<KdTree> {
     let bounds = prims::bounds(&prims);
     let automatic = (8.0 + 1.3 * (prims.len().max(1) as f64).log2()).round() as u32;
     let max_depth = config.max_depth.unwrap_or(automatic).min(MAX_DEPTH);
+    let never_split = (config.cost.traversal / config.cost.intersection) as usize;
     let thin = bounds.diagonal() * THINNEST;
-    let builder = Builder { config: *config, max_depth, thin, spent: AtomicUsize::new(0) };
-    let part = builder.grow(prims, bounds, 0);
+    let builder = Builder { config: *config, max_depth, thin, never_split, spent: AtomicUsize::new(0) };
+    let part = builder.grow(&prims, (0..prims.len() as u32).collect(), bounds, 0);
     if builder.is_broke() {
         return Err(Error::argument(
             format!("kdtree over {}", scene.name),

@@ -1,6 +1,6 @@
 //! Events of the exact sweep, and the sweep itself over those of one axis.
 
-use super::kdtree_bins::Shares;
+use super::kdtree_bins::Areas;
 use glam::Vec4;
 
 /// A triangle's box begins, lies or ends in a plane: `coordinate (bits) << 32 | kind << 30 | number of the triangle in
@@ -47,16 +47,16 @@ pub(super) fn begun(event: Event) -> u32 {
     (event >> 31 | event >> 30) as u32 & 1
 }
 
-/// The sweep where no triangle lies in a plane of its axis: every event is a candidate by itself. Returns the lowest cost
+/// The sweep where no triangle lies in a plane of its axis: every event is a candidate by itself, allowed or not. Returns the lowest cost
 /// (bits of an f32) and, below it, the event that has it.
 ///
 /// Of several events in one plane, all but the last end and the first start see too many triangles on one side, and so
-/// cost more than the plane does; they need no care. With the share `p` of the cell's area on the left and `s - p` on
-/// the right (`s` is constant), the cost is `p left + (s - p) right = s right + p (left - right)`, and `left - right`
-/// grows by one with every event. Most lists are so short that a mispredicted branch costs more than an event: there is
+/// cost more than the plane does; they need no care. With the area `p` on the left and `s - p` on the right (`s` is
+/// constant), the cost is `p left + (s - p) right = s right + p (left - right)`, and `left - right` grows by one with
+/// every event. Most lists are so short that a mispredicted branch costs more than an event: there is
 /// none but the loop's.
 #[inline(always)]
-pub(super) fn sweep(events: &[Event], shares: &Shares, count: usize, begun: u32) -> u64 {
+pub(super) fn sweep(events: &[Event], areas: &Areas, count: usize, begun: u32) -> u64 {
     let (mut right, mut difference) = (count as f32, -(begun as f32));
     let mut cheapest = u64::MAX;
     let (fours, rest) = events.as_chunks::<4>();
@@ -67,7 +67,7 @@ pub(super) fn sweep(events: &[Event], shares: &Shares, count: usize, begun: u32)
             let ended = Vec4::new(a, a + b, a + b + c, a + b + c + d);
             let steps = Vec4::new(a, 1.0 + b, 2.0 + c, 3.0 + d);
             let planes = Vec4::from_array(four.map(coordinate));
-            let cost = shares.costs(planes, Vec4::splat(right) - ended, Vec4::splat(difference) + steps);
+            let cost = areas.costs(planes, Vec4::splat(right) - ended, Vec4::splat(difference) + steps);
             let cheaper = cost.cmplt(costs);
             costs = Vec4::select(cheaper, cost, costs);
             // Bits ride along as floats; nothing is computed with them.
@@ -82,7 +82,7 @@ pub(super) fn sweep(events: &[Event], shares: &Shares, count: usize, begun: u32)
     for (i, &e) in rest.iter().enumerate() {
         let end = is_end(e);
         right -= end;
-        let cost = shares.cost(coordinate(e), right, difference + end);
+        let cost = areas.cost(coordinate(e), right, difference + end);
         difference += 1.0;
         cheapest = cheapest.min(ranked(cost, 4 * fours.len() + i));
     }
@@ -101,10 +101,10 @@ fn ranked(cost: f32, position: usize) -> u64 {
     u64::from(cost.max(0.0).to_bits()) << 32 | position as u64
 }
 
-/// The sweep by groups of events in one plane: ends and planar triangles leave the right before the plane is judged,
+/// The sweep with care for everything, by groups of events in one plane: ends and planar triangles leave the right before the plane is judged,
 /// planar ones and starts enter the left after it. Also returns whether planar triangles go left.
 #[cold]
-pub(super) fn sweep_with_planar(events: &[Event], shares: &Shares, count: usize, begun: u32) -> (u64, bool) {
+pub(super) fn careful_sweep(events: &[Event], areas: &Areas, count: usize, begun: u32) -> (u64, bool) {
     let (mut left, mut right) = (count - begun as usize, count);
     let mut cheapest = (u64::MAX, true);
     let mut position = 0;
@@ -113,8 +113,8 @@ pub(super) fn sweep_with_planar(events: &[Event], shares: &Shares, count: usize,
         let (plane, planar) = (coordinate(group[0]), of_kind(PLANAR));
         right -= of_kind(END) + planar;
         // Planar triangles may lie on the cell's border, which is no candidate.
-        if shares.min < plane && plane < shares.max {
-            let cost = |left: usize, right: usize| shares.cost(plane, right as f32, left as f32 - right as f32);
+        if areas.allows(plane) {
+            let cost = |left: usize, right: usize| areas.cost(plane, right as f32, left as f32 - right as f32);
             let on_left = (ranked(cost(left + planar, right), position), true);
             let on_right = (ranked(cost(left, right + planar), position), false);
             for candidate in [on_left, on_right] {

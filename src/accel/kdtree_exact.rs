@@ -5,12 +5,13 @@
 //! into the children, which keeps their order.
 
 use super::kdtree::KdNode;
-use super::kdtree_bins::Shares;
-use super::kdtree_build::{Builder, Subtree, halves};
+use super::kdtree_bins::Areas;
+use super::kdtree_build::{Builder, MAX_LEAVES_AND_RECORDS, Subtree, halves};
 use super::kdtree_events::{
-    END, Event, PLANAR, START, begun, coordinate, event, kind, local, ordered, restored, sweep, sweep_with_planar,
+    END, Event, PLANAR, START, begun, careful_sweep, coordinate, event, kind, local, ordered, restored, sweep,
 };
 use super::prims::Prim;
+use super::sah::unit;
 use crate::math::Aabb;
 
 /// Sides that a triangle goes to, as bits.
@@ -25,6 +26,8 @@ pub(super) fn build(builder: &Builder, prims: &[Prim], cell: Aabb, depth: u32) -
         locals: (0..prims.len() as u32).collect(),
         events: Default::default(),
         any_planar: [false; 3],
+        unit: 1.0,
+        broke: builder.is_broke(),
         side: vec![LEFT | RIGHT; prims.len()],
         out: Subtree::default(),
     };
@@ -37,7 +40,9 @@ pub(super) fn build(builder: &Builder, prims: &[Prim], cell: Aabb, depth: u32) -
         root.top[axis] = root.events[axis].to;
         sweep.events[axis] = events;
     }
+    sweep.unit = unit(&cell);
     sweep.out.depth = sweep.grow(&root);
+    builder.spend(sweep.size());
     sweep.out
 }
 
@@ -97,6 +102,10 @@ struct Sweep<'a> {
     locals: Vec<u32>,
     /// Lists of events, likewise.
     events: [Vec<Event>; 3],
+    /// About 1 over the extent of the subtree's cell.
+    unit: f32,
+    /// The tree has become too large.
+    broke: bool,
     /// Axes with triangles that lie in a plane.
     any_planar: [bool; 3],
     /// Where a triangle goes while its node is being split; to both sides at all other times.
@@ -132,7 +141,7 @@ impl Sweep<'_> {
 
     /// Builds the subtree of a node; returns its depth.
     fn grow(&mut self, node: &Node) -> u32 {
-        let stop = self.builder.must_stop(node.locals.len(), node.depth);
+        let stop = self.broke || self.builder.must_stop(node.locals.len(), node.depth);
         let Some(cut) = (if stop { None } else { self.find(node) }) else {
             self.leaf(node);
             return 0;
@@ -147,9 +156,14 @@ impl Sweep<'_> {
         1 + left_depth.max(right_depth)
     }
 
+    /// Leaves and records so far, or a little more.
+    fn size(&self) -> usize {
+        self.out.nodes.len() + self.out.triangles.len()
+    }
+
     fn leaf(&mut self, node: &Node) {
+        self.broke |= self.size() > MAX_LEAVES_AND_RECORDS;
         let locals = node.locals.of(&self.locals);
-        self.builder.spend(locals.len());
         self.out.nodes.push(KdNode::leaf(self.out.triangles.len() as u32, locals.len() as u32));
         self.out.triangles.extend(locals.iter().map(|&l| self.prims[l as usize].triangle()));
     }
@@ -158,22 +172,24 @@ impl Sweep<'_> {
     fn find(&self, node: &Node) -> Option<Cut> {
         let count = node.locals.len();
         let (mut cheapest, mut axis, mut planar_left) = (u64::MAX, 0, true);
-        for (a, shares) in Shares::new(&node.cell, self.builder.thin).iter().enumerate() {
-            if shares.max < shares.min {
-                continue;
-            }
+        let (areas, area) = Areas::new(&node.cell, self.unit, self.builder.thin)?;
+        for (a, areas) in areas.iter().enumerate() {
             let events = node.events[a].of(&self.events[a]);
-            let (found, left) = if self.any_planar[a] && events.iter().any(|&e| kind(e) == PLANAR) {
-                sweep_with_planar(events, shares, count, node.begun[a])
-            } else {
-                (sweep(events, shares, count, node.begun[a]), true)
-            };
+            let planar = self.any_planar[a] && events.iter().any(|&e| kind(e) == PLANAR);
+            let (mut found, mut left) = (u64::MAX, true);
+            if !planar {
+                found = sweep(events, areas, count, node.begun[a]);
+            }
+            // Seldom is the cheapest plane one that would cut off too thin a slice: then again, without such.
+            if planar || (found != u64::MAX && !areas.allows(coordinate(events[found as u32 as usize]))) {
+                (found, left) = careful_sweep(events, areas, count, node.begun[a]);
+            }
             if found < cheapest {
                 (cheapest, axis, planar_left) = (found, a, left);
             }
         }
         let cost = f32::from_bits((cheapest >> 32) as u32);
-        if cheapest == u64::MAX || !self.builder.pays(count, f64::from(cost)) {
+        if cheapest == u64::MAX || !self.builder.pays(count, f64::from(cost), f64::from(area)) {
             return None;
         }
         let events = node.events[axis].of(&self.events[axis]);

@@ -28,6 +28,12 @@ pub fn half_area(b: &Aabb) -> f64 {
     e.x * e.y + e.y * e.z + e.z * e.x
 }
 
+/// A power of two near 1 over the largest extent: areas in this unit neither overflow nor vanish.
+pub(super) fn unit(bounds: &Aabb) -> f32 {
+    let extent = (bounds.max.as_dvec3() - bounds.min.as_dvec3()).max_element();
+    if extent > 0.0 { extent.log2().floor().clamp(-120.0, 120.0).exp2().recip() as f32 } else { 1.0 }
+}
+
 impl CostModel {
     /// Cost of a leaf.
     pub fn leaf(&self, triangles: u32) -> f64 {
