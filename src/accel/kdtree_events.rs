@@ -47,14 +47,14 @@ pub(super) fn begun(event: Event) -> u32 {
     (event >> 31 | event >> 30) as u32 & 1
 }
 
-/// The sweep where no triangle lies in a plane of its axis: every event is a candidate by itself, allowed or not. Returns the lowest cost
-/// (bits of an f32) and, below it, the event that has it.
+/// The sweep where no triangle lies in a plane of its axis: every event is a candidate by itself, allowed or not. Returns
+/// the lowest cost (bits of an f32) and, below it, the event that has it.
 ///
 /// Of several events in one plane, all but the last end and the first start see too many triangles on one side, and so
 /// cost more than the plane does; they need no care. With the area `p` on the left and `s - p` on the right (`s` is
 /// constant), the cost is `p left + (s - p) right = s right + p (left - right)`, and `left - right` grows by one with
-/// every event. Most lists are so short that a mispredicted branch costs more than an event: there is
-/// none but the loop's.
+/// every event. Most lists are so short that a mispredicted branch costs more than an event: there is none but the
+/// loop's.
 #[inline(always)]
 pub(super) fn sweep(events: &[Event], areas: &Areas, count: usize, begun: u32) -> u64 {
     let (mut right, mut difference) = (count as f32, -(begun as f32));
@@ -101,8 +101,8 @@ fn ranked(cost: f32, position: usize) -> u64 {
     u64::from(cost.max(0.0).to_bits()) << 32 | position as u64
 }
 
-/// The sweep with care for everything, by groups of events in one plane: ends and planar triangles leave the right before the plane is judged,
-/// planar ones and starts enter the left after it. Also returns whether planar triangles go left.
+/// The sweep with care for everything, by groups of events in one plane: ends and planar triangles leave the right before
+/// the plane is judged, planar ones and starts enter the left after it. Also returns whether planar triangles go left.
 #[cold]
 pub(super) fn careful_sweep(events: &[Event], areas: &Areas, count: usize, begun: u32) -> (u64, bool) {
     let (mut left, mut right) = (count - begun as usize, count);
