@@ -67,7 +67,7 @@ fn rays(name: &str, scene: &Scene, side: u32, rounds: usize) {
     for backend in [Some(&cpu as &dyn Backend), gpu.as_ref().ok().map(|gpu| gpu as &dyn Backend)].into_iter().flatten()
     {
         for (selection, built) in &built {
-            let mut prepared = backend.prepare(scene, &built.structure, selection.traversal()).expect("fits");
+            let mut prepared = backend.prepare(scene, &built.structure, selection.method()).expect("fits");
             frame(prepared.as_mut(), view, size);
             let label = format!("{} ({})", selection.name(), backend.info().backend);
             contestants.push((label, Box::new(move || frame(prepared.as_mut(), view, size))));

@@ -101,7 +101,7 @@ fn traversals(c: &mut Criterion, name: &str, scene: &Scene, size: u32) {
     for variant in variants().iter().filter(|variant| variant.name != "brute") {
         let selection = Selection::parse(variant.name).expect("a name of the table");
         let built = selection.build(scene, 0).expect("builds");
-        let mut twin = cpu.prepare(scene, &built.structure, selection.traversal()).expect("fits");
+        let mut twin = cpu.prepare(scene, &built.structure, selection.method()).expect("fits");
         group.bench_function(variant.name, |b| b.iter(|| black_box(twin.trace(&given, false).expect("traces"))));
     }
 }

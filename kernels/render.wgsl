@@ -1,7 +1,9 @@
 // One frame, or a band of its rows: ray generation, traversal, shading and secondary rays in one dispatch.
-// One invocation per pixel, 8x8 neighbouring pixels per work-group. Twin: src/cpu/render.rs.
+// One invocation per pixel, GROUP_WIDTH x GROUP_HEIGHT neighbouring pixels (8x8 as a rule) per work-group. Twin:
+// src/cpu/render.rs.
 //
-// Specialised by SHADOWS and BOUNCES (ray configurations P, PS, PSR), by the traversal, and by counting or not.
+// Specialised by SHADOWS and BOUNCES (ray configurations P, PS, PSR), by the traversal, by counting or not, and by what
+// src/accel/method.rs lists.
 
 //!include lib/geom.wgsl
 //!include lib/scene.wgsl
@@ -15,7 +17,7 @@ var<private> lane: u32; // index in the work-group
 
 struct Frame {
     origin: vec3<f32>,
-    width: u32,
+    width: u32,           // of the image
     corner: vec3<f32>,    // from the eye to the image plane's top left corner
     first_row: u32,
     right: vec3<f32>,     // one pixel to the right
@@ -25,9 +27,13 @@ struct Frame {
     background: vec3<f32>,
     light_count: u32,
     first_light: u32,     // of this frame, in `lights`
-    first_pixel: u32,     // where this band begins in the output
+    first_pixel: u32,     // where this band begins in the output, if it had all columns
+    first_column: u32,
+    columns: u32,         // columns of this band
+    height: u32,          // of the image
     pad0: u32,
     pad1: u32,
+    pad2: u32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -42,24 +48,64 @@ fn primary_ray(column: u32, row: u32) -> Ray {
     return ray_along(frame.origin, unit(frame.corner + frame.right * x + frame.down * y));
 }
 
-// Consecutive invocations lie in squares (Morton order), so that those that share an instruction stream, be it 8, 16 or
-// 32 of them, have neighbouring rays in both directions.
+// Consecutive invocations lie in squares (Morton order) as far as the group's shape allows, so that those that share an
+// instruction stream, be it 8, 16 or 32 of them, have neighbouring rays in both directions.
 fn place_in_group(i: u32) -> vec2<u32> {
-    return vec2<u32>((i & 1u) | ((i >> 1u) & 2u) | ((i >> 2u) & 4u), ((i >> 1u) & 1u) | ((i >> 2u) & 2u) | ((i >> 3u) & 4u));
+    var place = vec2<u32>(0u, 0u);
+    var rest = i;
+    for (var bit = 1u; bit < max(GROUP_WIDTH, GROUP_HEIGHT); bit = bit << 1u) {
+        if (bit < GROUP_WIDTH) {
+            place.x |= (rest & 1u) * bit;
+            rest = rest >> 1u;
+        }
+        if (bit < GROUP_HEIGHT) {
+            place.y |= (rest & 1u) * bit;
+            rest = rest >> 1u;
+        }
+    }
+    return place;
 }
 
-@compute @workgroup_size(64)
+// The row of work-groups for the y-th one. A driver without a GPU gives each of its threads one contiguous share of the
+// groups and waits for the slowest: dealt out in turn, rows make these shares alike.
+fn row_of_groups(y: u32, rows: u32) -> u32 {
+    if (!SOFTWARE) {
+        return y;
+    }
+    let share = rows / THREADS;
+    let longer = rows % THREADS; // so many shares have a row more
+    let before = longer * (share + 1u);
+    if (y < before) {
+        return y % (share + 1u) * THREADS + y / (share + 1u);
+    }
+    return (y - before) % share * THREADS + longer + (y - before) / share;
+}
+
+// The pixel through which a pixel's ray goes: itself, or with FOUR_RAYS one of four for the whole work-group.
+fn seen_through(column: u32, row: u32) -> vec2<u32> {
+    if (FOUR_RAYS) {
+        let x = frame.width / 4u + (column / GROUP_WIDTH & 1u) * (frame.width / 2u);
+        let y = frame.height / 4u + (row / GROUP_HEIGHT & 1u) * (frame.height / 2u);
+        return vec2<u32>(x, y);
+    }
+    return vec2<u32>(column, row);
+}
+
+@compute @workgroup_size(GROUP_SIZE)
 fn main(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(local_invocation_index) local_index: u32,
 ) {
     lane = local_index;
     let place = place_in_group(local_index);
-    let column = group.x * 8u + place.x;
-    let band_row = group.y * 8u + place.y;
-    let inside = column < frame.width && band_row < frame.rows;
+    let group_rows = (frame.rows + GROUP_HEIGHT - 1u) / GROUP_HEIGHT;
+    let band_column = group.x * GROUP_WIDTH + place.x;
+    let band_row = row_of_groups(group.y, group_rows) * GROUP_HEIGHT + place.y;
+    let inside = band_column < frame.columns && band_row < frame.rows;
+    let column = frame.first_column + band_column;
 
-    var ray = primary_ray(column, frame.first_row + band_row);
+    let pixel = seen_through(column, frame.first_row + band_row);
+    var ray = primary_ray(pixel.x, pixel.y);
     var alive = inside;
     var colour = vec3<f32>(0.0, 0.0, 0.0);
     var weight = 1.0; // product of the reflectivities on the way
@@ -101,11 +147,14 @@ fn main(
             let light = lights[frame.first_light + i];
             var lit = alive;
             if (SHADOWS) {
-                // From the light towards the point, which lies at distance 1
+                // Between light and point, of which one lies at distance 0 and the other at distance 1
                 if (alive) {
                     count_ray(SHADOW);
                 }
-                let shadow = ray_along(light.position.xyz, surface.point - light.position.xyz);
+                let position = light.position.xyz;
+                let start = select(position, surface.point, TO_LIGHT);
+                let end = select(surface.point, position, TO_LIGHT);
+                let shadow = ray_along(start, end - start);
                 lit = !any_hit(shadow, 1.0, alive) && alive;
             }
             if (lit) {

@@ -1,4 +1,4 @@
-// Given rays: the nearest hit, or with ANY_HIT whether anything is hit. One invocation per ray, 64 per work-group.
+// Given rays: the nearest hit, or with ANY_HIT whether anything is hit. One invocation per ray.
 // Twin: src/cpu/trace.rs.
 
 //!include lib/geom.wgsl
@@ -30,10 +30,10 @@ struct Job {
 @group(0) @binding(3) var<storage, read> given: array<GivenRay>;
 @group(0) @binding(8) var<storage, read_write> hits: array<GivenHit>;
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(GROUP_SIZE)
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local_index: u32) {
     lane = local_index;
-    let index = group.x * 64u + local_index;
+    let index = group.x * GROUP_SIZE + local_index;
     let alive = index < job.rays;
     let source = given[min(index, job.rays - 1u)];
     let ray = ray_along(source.origin.xyz, source.direction.xyz);

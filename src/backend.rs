@@ -1,6 +1,7 @@
 //! What a device must be able to do. Two implement it: [`crate::cpu`] and [`crate::gpu`].
 
-use crate::accel::{Structure, Traversal};
+use crate::accel::method::Group;
+use crate::accel::{Method, Structure};
 use crate::camera::View;
 pub use crate::config::{Config, MAX_BOUNCES};
 use crate::error::Result;
@@ -68,9 +69,6 @@ pub struct CountedPixel {
     pub counters: PixelCounters,
 }
 
-/// Work-groups render squares of this many pixels a side; bands of rows are multiples of it.
-pub const GROUP_SIDE: u32 = 8;
-
 /// How far off a surface secondary rays start, in scene units: far above the rounding of coordinates of the scene's
 /// size (about 1e-7 of it), far below anything that is seen.
 pub fn surface_epsilon(bounds: Aabb) -> f32 {
@@ -91,6 +89,33 @@ impl Size {
     pub fn pixels(self) -> usize {
         self.width as usize * self.height as usize
     }
+}
+
+/// A part of an image, in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tile {
+    /// First column.
+    pub column: u32,
+    /// Columns.
+    pub columns: u32,
+    /// First row.
+    pub row: u32,
+    /// Rows.
+    pub rows: u32,
+}
+
+/// Splits an image into about `across` x `down` tiles of whole work-groups, row by row.
+pub fn tiles(size: Size, across: u32, down: u32, group: Group) -> Vec<Tile> {
+    let columns = size.width.div_ceil(across.max(1)).next_multiple_of(group.width);
+    let rows = size.height.div_ceil(down.max(1)).next_multiple_of(group.height);
+    let mut tiles = Vec::new();
+    for row in (0..size.height).step_by(rows as usize) {
+        for column in (0..size.width).step_by(columns as usize) {
+            let (columns, rows) = (columns.min(size.width - column), rows.min(size.height - row));
+            tiles.push(Tile { column, columns, row, rows });
+        }
+    }
+    tiles
 }
 
 /// How long one frame took.
@@ -167,7 +192,7 @@ pub trait Backend {
     /// What it is.
     fn info(&self) -> &DeviceInfo;
 
-    /// Uploads scene and structure and makes ready to run `traversal` over it.
+    /// Uploads scene and structure and makes ready to send rays through it by `method`.
     ///
     /// # Errors
     /// [`crate::Error::Device`] if it does not fit the device's limits.
@@ -175,7 +200,7 @@ pub trait Backend {
         &'a self,
         scene: &'a Scene,
         structure: &'a Structure,
-        traversal: Traversal,
+        method: Method,
     ) -> Result<Box<dyn Prepared + 'a>>;
 }
 

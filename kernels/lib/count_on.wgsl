@@ -29,6 +29,10 @@ fn count_test() {
     counters[ray_kind].tests += 1u;
 }
 
+fn count_tests(n: u32) {
+    counters[ray_kind].tests += n;
+}
+
 fn count_pop() {
     counters[ray_kind].pops += 1u;
 }

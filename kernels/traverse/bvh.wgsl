@@ -1,7 +1,8 @@
 // BVH walked by a packet: the 64 rays of a work-group share one stack and visit the same nodes (Günther et al. 2007),
-// with the thesis's corrected vote: a ray that wants neither child has none. Twin: src/cpu/traverse/bvh.rs.
+// with the thesis's corrected vote: a ray that wants neither child has none (with ORIGINAL_VOTE it has one, by which
+// box begins first on its line). Twin: src/cpu/traverse/bvh.rs.
 //
-// All 64 invocations stay until the packet is done; rays that are not alive take part in the barriers only.
+// All invocations, at most 64, stay until the packet is done; rays that are not alive take part in the barriers only.
 
 //!include lib/together.wgsl
 //!include lib/bvh.wgsl
@@ -17,6 +18,7 @@ const LEFT_ONE: u32 = 1u;
 const RIGHT_ONE: u32 = 1u << 7u;
 const BOTH_ONE: u32 = 1u << 14u;
 const VOTE_SHIFT: u32 = 21u;
+const NO_VOTE: u32 = 1u << VOTE_SHIFT;
 
 fn wish(l: vec2<f32>, r: vec2<f32>, go_left: bool, go_right: bool) -> u32 {
     if (go_left && go_right) {
@@ -29,7 +31,10 @@ fn wish(l: vec2<f32>, r: vec2<f32>, go_left: bool, go_right: bool) -> u32 {
     if (go_right) {
         return RIGHT_ONE | (2u << VOTE_SHIFT);
     }
-    return 1u << VOTE_SHIFT;
+    if (ORIGINAL_VOTE) {
+        return select(0u, 2u, r.x < l.x) << VOTE_SHIFT;
+    }
+    return NO_VOTE;
 }
 
 // Done by invocation 0 only: what the packet visits next, by the sum of wishes.
@@ -39,7 +44,7 @@ fn choose(left: u32, right: u32) {
     let wants_right = ((sum >> 7u) & 127u) != 0u;
     let wants_both = ((sum >> 14u) & 127u) != 0u;
     if (wants_both || (wants_left && wants_right)) {
-        let right_first = (sum >> VOTE_SHIFT) > 64u;
+        let right_first = (sum >> VOTE_SHIFT) > GROUP_SIZE;
         stack[stack_depth] = select(right, left, right_first);
         stack_depth += 1u;
         next = vec2<u32>(select(left, right, right_first), 0u);
@@ -80,7 +85,7 @@ fn visit_inner(ray: Ray, node: u32, t: f32, alive: bool) -> u32 {
     let right = nodes[node + 1u];
     let l = ray_box(ray, left.lo, left.hi);
     let r = ray_box(ray, right.lo, right.hi);
-    atomicAdd(&tally, wish(l, r, wanted(l, t) && alive, wanted(r, t) && alive));
+    atomicAdd(&tally, select(NO_VOTE, wish(l, r, wanted(l, t), wanted(r, t)), alive));
     workgroupBarrier();
     if (lane == 0u) {
         choose(left.reference, right.reference);

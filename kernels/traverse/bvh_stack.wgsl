@@ -7,64 +7,55 @@
 //!include lib/alone.wgsl
 //!include lib/bvh.wgsl
 
-const BOTTOM: u32 = 0xffffffffu; // lies below all entries; no node's index
-
-var<private> stack_node: array<u32, STACK_SIZE>;
+var<private> stack: array<u32, STACK_SIZE>; // references, which need no read when they are popped
 var<private> stack_t: array<f32, STACK_SIZE>;
 
 struct Walk {
-    reference: u32, // of the node to visit
-    depth: u32,     // entries on the stack with BOTTOM
+    node: u32,  // reference of the node to visit
+    depth: u32, // entries on the stack; the lowest one is EMPTY and never dropped
 }
 
 fn start_walk(ray: Ray, limit: f32) -> Walk {
     let root = nodes[0];
-    stack_node[0] = BOTTOM;
+    stack[0] = EMPTY;
     stack_t[0] = -1.0;
     return Walk(select(EMPTY, root.reference, wanted(ray_box(ray, root.lo, root.hi), limit)), 1u);
 }
 
-// The index of the next node whose box begins before `t`, or BOTTOM.
-fn pop(t: f32, walk: ptr<function, Walk>) -> u32 {
+// The next node whose box begins before `t`, or EMPTY.
+fn pop(t: f32, walk: ptr<function, Walk>) {
     loop {
         (*walk).depth -= 1u;
-        if (stack_node[(*walk).depth] != BOTTOM) {
+        if ((*walk).depth > 0u) {
             count_pop();
         }
         if (stack_t[(*walk).depth] <= t) {
             break;
         }
     }
-    return stack_node[(*walk).depth];
-}
-
-fn visit(node: u32, walk: ptr<function, Walk>) {
-    (*walk).reference = EMPTY;
-    if (node != BOTTOM) {
-        (*walk).reference = nodes[node].reference;
-    }
+    (*walk).node = stack[(*walk).depth];
 }
 
 // Go down, nearer child first, until the node is a leaf or nothing is left. Boxes beyond `t` are of no interest.
 fn walk_to_leaf(ray: Ray, t: f32, walk: ptr<function, Walk>) {
-    while (!is_leaf((*walk).reference)) {
+    while (!is_leaf((*walk).node)) {
         count_inner();
-        let left = (*walk).reference;
-        let l = ray_box(ray, nodes[left].lo, nodes[left].hi);
-        let r = ray_box(ray, nodes[left + 1u].lo, nodes[left + 1u].hi);
+        let left = nodes[(*walk).node];
+        let right = nodes[(*walk).node + 1u];
+        let l = ray_box(ray, left.lo, left.hi);
+        let r = ray_box(ray, right.lo, right.hi);
         let go_left = wanted(l, t);
         let go_right = wanted(r, t);
         let right_first = !go_left || (go_right && r.x < l.x);
-        var node = left + u32(right_first);
+        (*walk).node = select(left.reference, right.reference, right_first);
         if (go_left && go_right) {
-            stack_node[(*walk).depth] = left + u32(!right_first);
+            stack[(*walk).depth] = select(right.reference, left.reference, right_first);
             stack_t[(*walk).depth] = max(l.x, r.x);
             (*walk).depth += 1u;
         }
         if (!go_left && !go_right) {
-            node = pop(t, walk);
+            pop(t, walk);
         }
-        visit(node, walk);
     }
 }
 
@@ -76,16 +67,16 @@ fn nearest_hit(ray: Ray, alive: bool) -> u32 {
     var walk = start_walk(ray, T_MAX);
     loop {
         walk_to_leaf(ray, best.t, &walk);
-        if (walk.reference == EMPTY) {
+        if (walk.node == EMPTY) {
             break;
         }
         count_leaf();
-        let first = leaf_first(walk.reference);
-        for (var i = first; i < first + leaf_count(walk.reference); i += 1u) {
+        let first = leaf_first(walk.node);
+        for (var i = first; i < first + leaf_count(walk.node); i += 1u) {
             count_test();
             test_record(ray, i, &best);
         }
-        visit(pop(best.t, &walk), &walk);
+        pop(best.t, &walk);
     }
     return best.record;
 }
@@ -97,18 +88,18 @@ fn any_hit(ray: Ray, limit: f32, alive: bool) -> bool {
     var walk = start_walk(ray, limit);
     loop {
         walk_to_leaf(ray, limit, &walk);
-        if (walk.reference == EMPTY) {
+        if (walk.node == EMPTY) {
             break;
         }
         count_leaf();
-        let first = leaf_first(walk.reference);
-        for (var i = first; i < first + leaf_count(walk.reference); i += 1u) {
+        let first = leaf_first(walk.node);
+        for (var i = first; i < first + leaf_count(walk.node); i += 1u) {
             count_test();
             if (record_blocks(ray, i, limit)) {
                 return true;
             }
         }
-        visit(pop(limit, &walk), &walk);
+        pop(limit, &walk);
     }
     return false;
 }

@@ -1,14 +1,13 @@
-// kd-tree without a full stack: a short stack of SHORT_STACK entries in work-group memory, pushdown and restart
-// (Foley and Sugerman 2005, Horn et al. 2007), in the thesis's order. Twin: src/cpu/traverse/kdtree.rs.
+// kd-tree without a full stack: restart (Foley and Sugerman 2005), pushdown and a short stack of SHORT_STACK entries (Horn
+// et al. 2007), in the thesis's order. Twin: src/cpu/traverse/kdtree.rs.
 
 //!include lib/alone.wgsl
 
 @group(0) @binding(6) var<storage, read> nodes: array<vec2<u32>>; // word, link: src/accel/kdtree.rs
 
-// A ring per invocation; entry `slot` of all 64 lies together, so that equal depths fall into different banks.
-var<workgroup> stack_node: array<u32, SHORT_STACK * 64u>;
-var<workgroup> stack_min: array<f32, SHORT_STACK * 64u>;
-var<workgroup> stack_max: array<f32, SHORT_STACK * 64u>;
+const RING: u32 = max(SHORT_STACK, 1u);
+
+//!slot short_stack
 
 struct Descent {
     node: u32,
@@ -18,7 +17,7 @@ struct Descent {
     t_restart: f32,    // where the last restart set out, -1 before the first one
     restart_node: u32,
     pushdown: bool,    // the ray has not branched yet: the restart node follows
-    top: u32,          // entries ever pushed less those popped; modulo SHORT_STACK it is a place in the ring
+    top: u32,          // entries ever pushed less those popped; modulo RING it is a place in the ring
     held: u32,         // entries that are still in the ring
     inside: bool,
 }
@@ -27,11 +26,7 @@ fn start_descent(ray: Ray, limit: f32) -> Descent {
     let interval = ray_box(ray, structure.bounds_min, structure.bounds_max);
     let t_min = max(interval.x, 0.0);
     let t_end = min(interval.y, limit);
-    return Descent(0u, t_min, t_end, t_end, -1.0, 0u, true, 0u, 0u, interval.x <= interval.y && t_min <= t_end);
-}
-
-fn slot(top: u32) -> u32 {
-    return (top & (SHORT_STACK - 1u)) * 64u + lane;
+    return Descent(0u, t_min, t_end, t_end, -1.0, 0u, PUSHDOWN, 0u, 0u, interval.x <= interval.y && t_min <= t_end);
 }
 
 // Go one inner node down.
@@ -54,12 +49,14 @@ fn descend(ray: Ray, node: vec2<u32>, d: ptr<function, Descent>) {
     } else if (t_split < (*d).t_min || t_split <= (*d).t_restart) {
         (*d).node = far;
     } else {
-        let place = slot((*d).top);
-        stack_node[place] = far;
-        stack_min[place] = t_split;
-        stack_max[place] = (*d).t_max;
-        (*d).top += 1u;
-        (*d).held = min((*d).held + 1u, SHORT_STACK);
+        if (SHORT_STACK > 0u) {
+            let place = stack_place((*d).top % RING);
+            stack_node[place] = far;
+            stack_min[place] = t_split;
+            stack_max[place] = (*d).t_max;
+            (*d).top += 1u;
+            (*d).held = min((*d).held + 1u, SHORT_STACK);
+        }
         (*d).node = near;
         (*d).t_max = t_split;
         (*d).pushdown = false;
@@ -75,7 +72,7 @@ fn leave_leaf(d: ptr<function, Descent>) -> bool {
         count_pop();
         (*d).top -= 1u;
         (*d).held -= 1u;
-        let place = slot((*d).top);
+        let place = stack_place((*d).top % RING);
         (*d).node = stack_node[place];
         (*d).t_min = stack_min[place];
         (*d).t_max = stack_max[place];

@@ -16,6 +16,7 @@ mod kdtree_bins;
 pub mod kdtree_build;
 mod kdtree_events;
 mod kdtree_exact;
+pub mod method;
 pub mod octants;
 pub mod ploc;
 pub mod prims;
@@ -24,8 +25,9 @@ mod registry;
 pub mod sah;
 mod selection;
 
+pub use method::{Method, Traversal};
 pub use properties::Properties;
-pub use registry::{OptionInfo, VariantInfo, variants};
+pub use registry::{COMMON_OPTIONS, OptionInfo, VariantInfo, variants};
 pub use selection::{Built, MAX_THREADS, Selection};
 
 use crate::math::Aabb;
@@ -63,19 +65,4 @@ pub enum Structure {
     KdTree(kdtree::KdTree),
     /// Bounding volume hierarchy.
     Bvh(bvh::Bvh),
-}
-
-/// How a structure is walked; each is one file in `kernels/traverse/` and its twin in [`crate::cpu`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Traversal {
-    /// Every triangle.
-    Brute,
-    /// 3D-DDA.
-    Grid,
-    /// kd-tree with a short stack of four, pushdown and restart.
-    KdTree,
-    /// BVH, 8x8 packet with one shared stack.
-    Bvh,
-    /// BVH, one ray per invocation with a private stack.
-    BvhStack,
 }

@@ -1,5 +1,6 @@
 //! What `--structure` can name: every pair of builder and traversal, with its options. One row per variant.
 
+use super::method::{KdSearch, MAX_SHORT_STACK, Vote};
 use super::selection::Selection;
 use super::{Structure, Traversal, brute, bvh_build, grid_build, kdtree_build, ploc};
 use crate::error::Result;
@@ -14,10 +15,12 @@ pub struct VariantInfo {
     pub summary: &'static str,
     /// Where it comes from; empty if from nowhere in particular.
     pub paper: &'static str,
-    /// What can be set.
-    pub options: &'static [OptionInfo],
+    /// What can be set about what is built.
+    pub build_options: &'static [OptionInfo],
+    /// What can be set about how it is walked, beside [`COMMON_OPTIONS`].
+    pub walk_options: &'static [OptionInfo],
     /// How it is walked.
-    pub traversal: Traversal,
+    pub(super) traversal: fn(&Selection) -> Traversal,
     /// Variants with the same builder and equal options share one built structure.
     pub(super) builder: &'static str,
     /// False for builders that use one thread whatever they are given.
@@ -25,8 +28,15 @@ pub struct VariantInfo {
     pub(super) build: fn(&Selection, &Scene) -> Result<Structure>,
 }
 
+impl VariantInfo {
+    /// All options, in the order of tables: the builder's, the traversal's, and those that all have.
+    pub fn options(&self) -> impl Iterator<Item = &'static OptionInfo> {
+        self.build_options.iter().chain(self.walk_options).chain(COMMON_OPTIONS)
+    }
+}
+
 /// An option of a variant.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct OptionInfo {
     /// Left of `=`.
     pub key: &'static str,
@@ -38,7 +48,7 @@ pub struct OptionInfo {
 }
 
 /// What an option's value may be.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) enum Kind {
     /// A whole number from .. to.
     Count(u32, u32),
@@ -92,6 +102,78 @@ const KD_OPTIONS: &[OptionInfo] = &[
     },
 ];
 
+const KD_WALK: &[OptionInfo] = &[
+    OptionInfo {
+        key: "search",
+        default: "short-stack",
+        meaning: "after a leaf: restart at the root, at the deepest node without a branch above (pushdown), or pop from a \
+                  short stack and push down",
+        kind: Kind::Word(&["restart", "pushdown", "short-stack"]),
+    },
+    OptionInfo {
+        key: "stack",
+        default: "4",
+        meaning: "entries of the short stack",
+        kind: Kind::Count(1, MAX_SHORT_STACK),
+    },
+    OptionInfo {
+        key: "memory",
+        default: "workgroup",
+        meaning: "where the short stack lies",
+        kind: Kind::Word(&["workgroup", "private"]),
+    },
+];
+
+const VOTE: OptionInfo = OptionInfo {
+    key: "vote",
+    default: "corrected",
+    meaning: "who votes on the order of children: rays that want one (corrected), or all (original)",
+    kind: Kind::Word(&["corrected", "original"]),
+};
+
+/// Shapes of a work-group that a packet can have, which shares bits of one word.
+const PACKET: OptionInfo = OptionInfo {
+    key: "packet",
+    default: "8x8",
+    meaning: "pixels of a packet, which is a work-group",
+    kind: Kind::Word(&["8x8", "8x4", "4x8", "4x4", "16x4", "4x16"]),
+};
+
+const GROUP: OptionInfo = OptionInfo {
+    key: "group",
+    default: "8x8",
+    meaning: "pixels of a work-group",
+    kind: Kind::Word(&["8x8", "4x4", "8x4", "4x8", "16x4", "4x16", "32x1", "64x1", "16x8", "16x16", "32x8"]),
+};
+
+/// Options that every variant has, after its own.
+pub const COMMON_OPTIONS: &[OptionInfo] = &[
+    OptionInfo {
+        key: "shadows",
+        default: "from-light",
+        meaning: "direction of shadow rays",
+        kind: Kind::Word(&["from-light", "to-light"]),
+    },
+    OptionInfo {
+        key: "tiles",
+        default: "1",
+        meaning: "render the image in N x N tiles one after another",
+        kind: Kind::Count(1, 64),
+    },
+    OptionInfo {
+        key: "pattern",
+        default: "image",
+        meaning: "primary rays: the camera's, or only four different ones, one per work-group",
+        kind: Kind::Word(&["image", "four"]),
+    },
+    OptionInfo {
+        key: "checks",
+        default: "off",
+        meaning: "compile the kernel with bounds checks and loop bounds",
+        kind: Kind::Word(&["off", "on"]),
+    },
+];
+
 /// All variants, in the order of tables.
 pub fn variants() -> &'static [VariantInfo] {
     const VARIANTS: &[VariantInfo] = &[
@@ -99,8 +181,9 @@ pub fn variants() -> &'static [VariantInfo] {
             name: "grid",
             summary: "uniform grid, walked by a 3D-DDA",
             paper: "Fujimoto et al. 1986; Amanatides and Woo 1987",
-            options: GRID_OPTIONS,
-            traversal: Traversal::Grid,
+            build_options: GRID_OPTIONS,
+            walk_options: &[GROUP],
+            traversal: |_| Traversal::Grid,
             builder: "grid",
             parallel: false,
             build: build_grid,
@@ -109,8 +192,9 @@ pub fn variants() -> &'static [VariantInfo] {
             name: "kdtree",
             summary: "SAH kd-tree, short stack of four with pushdown and restart",
             paper: "Shevtsov et al. 2007; Wald and Havran 2006; Horn et al. 2007",
-            options: KD_OPTIONS,
-            traversal: Traversal::KdTree,
+            build_options: KD_OPTIONS,
+            walk_options: &[KD_WALK[0], KD_WALK[1], KD_WALK[2], GROUP],
+            traversal: kd_search,
             builder: "kdtree",
             parallel: true,
             build: build_kdtree,
@@ -119,8 +203,9 @@ pub fn variants() -> &'static [VariantInfo] {
             name: "bvh",
             summary: "binned SAH BVH, packets of 8x8 rays with one shared stack",
             paper: "Günther et al. 2007",
-            options: BVH_OPTIONS,
-            traversal: Traversal::Bvh,
+            build_options: BVH_OPTIONS,
+            walk_options: &[VOTE, PACKET],
+            traversal: vote,
             builder: "bvh",
             parallel: true,
             build: build_bvh,
@@ -129,8 +214,9 @@ pub fn variants() -> &'static [VariantInfo] {
             name: "bvh-stack",
             summary: "the same BVH, one ray per thread with a stack of its own",
             paper: "Aila and Laine 2009",
-            options: BVH_OPTIONS,
-            traversal: Traversal::BvhStack,
+            build_options: BVH_OPTIONS,
+            walk_options: &[GROUP],
+            traversal: |_| Traversal::BvhStack,
             builder: "bvh",
             parallel: true,
             build: build_bvh,
@@ -139,23 +225,47 @@ pub fn variants() -> &'static [VariantInfo] {
             name: "ploc-stack",
             summary: "BVH built by obvhs (PLOC with reinsertion), one ray per thread with a stack of its own",
             paper: "Meister and Bittner 2018",
-            options: &[OptionInfo {
+            build_options: &[OptionInfo {
                 key: "preset",
                 default: "medium",
                 meaning: "obvhs's preset",
                 kind: Kind::Word(&ploc::PRESETS),
             }],
-            traversal: Traversal::BvhStack,
+            walk_options: &[GROUP],
+            traversal: |_| Traversal::BvhStack,
             builder: "ploc",
             parallel: true,
             build: build_ploc,
         },
         VariantInfo {
+            name: "grid-coop",
+            summary: "the same grid; the 64 threads of a group share out all triangle tests of the group",
+            paper: "",
+            build_options: GRID_OPTIONS,
+            walk_options: &[PACKET],
+            traversal: |_| Traversal::GridCoop,
+            builder: "grid",
+            parallel: false,
+            build: build_grid,
+        },
+        VariantInfo {
+            name: "grid-packet",
+            summary: "the same grid; packets march through it slice by slice along their main axis",
+            paper: "Wald et al. 2006",
+            build_options: GRID_OPTIONS,
+            walk_options: &[PACKET],
+            traversal: |_| Traversal::GridPacket,
+            builder: "grid",
+            parallel: false,
+            build: build_grid,
+        },
+        VariantInfo {
             name: "brute",
             summary: "no structure: every ray against every triangle (ground truth for small scenes)",
             paper: "",
-            options: &[],
-            traversal: Traversal::Brute,
+            build_options: &[],
+            walk_options: &[GROUP],
+            traversal: |_| Traversal::Brute,
             builder: "brute",
             parallel: true,
             build: |_, scene| brute::build(scene).map(Structure::Brute),
@@ -183,6 +293,19 @@ fn build_kdtree(s: &Selection, scene: &Scene) -> Result<Structure> {
 fn build_bvh(s: &Selection, scene: &Scene) -> Result<Structure> {
     let config = bvh_build::Config { bins: s.size("bins"), max_leaf: s.size("max_leaf") };
     bvh_build::build(scene, &config).map(Structure::Bvh)
+}
+
+fn kd_search(s: &Selection) -> Traversal {
+    let search = s.value("search");
+    Traversal::KdTree(KdSearch {
+        stack: if search == "short-stack" { s.count("stack").unwrap_or_default() } else { 0 },
+        pushdown: search != "restart",
+        private: s.value("memory") == "private",
+    })
+}
+
+fn vote(s: &Selection) -> Traversal {
+    Traversal::Bvh(if s.value("vote") == "original" { Vote::Original } else { Vote::Corrected })
 }
 
 fn build_ploc(s: &Selection, scene: &Scene) -> Result<Structure> {

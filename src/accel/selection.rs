@@ -1,7 +1,8 @@
 //! One structure as a user selects it, and what it takes to build it.
 
-use super::registry::{VariantInfo, variants};
-use super::{Structure, Traversal};
+use super::Structure;
+use super::method::{Group, Method, Pattern, ShadowRays};
+use super::registry::{OptionInfo, VariantInfo, variants};
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 use std::time::Instant;
@@ -39,13 +40,13 @@ impl Selection {
             let problem = format!("there is no structure '{name}'");
             return Err(Error::argument(place(), problem, format!("one of {}", names.join(", "))));
         };
-        let table = variants()[variant].options;
+        let table: Vec<&OptionInfo> = variants()[variant].options().collect();
         let mut values: Vec<String> = table.iter().map(|o| o.default.to_owned()).collect();
         for option in options.split(',').filter(|o| !o.is_empty()) {
             let (key, value) = option.split_once('=').unwrap_or((option, ""));
             let Some(index) = table.iter().position(|o| o.key == key) else {
                 let keys: Vec<&str> = table.iter().map(|o| o.key).collect();
-                let mend = if keys.is_empty() { "it has none".into() } else { format!("one of {}", keys.join(", ")) };
+                let mend = format!("one of {}", keys.join(", "));
                 return Err(Error::argument(place(), format!("{name} has no option '{key}'"), mend));
             };
             values[index] = table[index]
@@ -68,20 +69,33 @@ impl Selection {
 
     /// The options that differ from their defaults, `key=value,...`, or `default`.
     pub fn variant(&self) -> String {
-        let options = self.info().options.iter().zip(&self.values);
+        let options = self.info().options().zip(&self.values);
         let set: Vec<String> =
             options.filter(|(o, v)| o.default != *v).map(|(o, v)| format!("{}={v}", o.key)).collect();
         if set.is_empty() { "default".to_owned() } else { set.join(",") }
     }
 
-    /// How it is walked.
-    pub fn traversal(&self) -> Traversal {
-        self.info().traversal
+    /// How rays go through it.
+    pub fn method(&self) -> Method {
+        let shape = if self.has("packet") { self.value("packet") } else { self.value("group") };
+        let (width, height) = shape.split_once('x').expect("the table lists shapes");
+        let side = |text: &str| text.parse().expect("the table lists shapes");
+        Method {
+            traversal: (self.info().traversal)(self),
+            shadows: match self.value("shadows") {
+                "to-light" => ShadowRays::ToLight,
+                _ => ShadowRays::FromLight,
+            },
+            pattern: if self.value("pattern") == "four" { Pattern::Four } else { Pattern::Image },
+            group: Group { width: side(width), height: side(height) },
+            tiles: self.count("tiles").unwrap_or(1),
+            checked: self.value("checks") == "on",
+        }
     }
 
     /// Equal for selections whose built structures are the same.
     pub fn build_key(&self) -> String {
-        format!("{}:{}", self.info().builder, self.values.join(","))
+        format!("{}:{}", self.info().builder, self.values[..self.info().build_options.len()].join(","))
     }
 
     /// Builds the structure on `threads` threads (0: as many as there are).
@@ -105,8 +119,12 @@ impl Selection {
         })
     }
 
+    fn has(&self, key: &str) -> bool {
+        self.info().options().any(|o| o.key == key)
+    }
+
     pub(super) fn value(&self, key: &str) -> &str {
-        let index = self.info().options.iter().position(|o| o.key == key).expect("an option of the table");
+        let index = self.info().options().position(|o| o.key == key).expect("an option of the table");
         &self.values[index]
     }
 

@@ -4,6 +4,7 @@ use super::measure;
 use super::plan::{Path, Plan};
 use super::sweep::Event;
 use super::verify::{Verdict, Verifier};
+use crate::accel::method::Rays;
 use crate::accel::{Built, Selection};
 use crate::backend::{Config, Interrupted, Prepared, Size};
 use crate::error::{Error, Result};
@@ -57,8 +58,8 @@ pub struct Subject<'s> {
     pub paths: Vec<(Config, Path)>,
     /// Knows the right answers.
     pub verifier: Verifier<'s>,
-    /// Image of the first structure that was measured, by configuration and size: its name and hash.
-    pub images: HashMap<(Config, Size), (String, String)>,
+    /// Image of the first structure that was measured, by configuration, size and rays: its name and hash.
+    pub images: HashMap<(Config, Size, Rays), (String, String)>,
 }
 
 /// A structure and a traversal on their way through the configurations.
@@ -183,7 +184,9 @@ pub fn measure(
         }
     };
     record.image_hash = Some(image.image_hash.clone());
-    if let Some(message) = compare_structures(context, subject, &mut record, &image) {
+    if let Some(message) =
+        compare_structures(context, subject, &mut record, candidate.selection.method().rays(), &image)
+    {
         fail(&mut record, Failure::Verification, message);
         return Ok(record);
     }
@@ -234,9 +237,10 @@ fn check(
 ) -> Result<Verdict> {
     context.check_interrupt()?;
     let (config, path) = &subject.paths[path];
-    let twin = (size == SMALL).then(|| (&candidate.built.structure, candidate.selection.traversal()));
+    let twin = (size == SMALL).then_some(&candidate.built.structure);
+    let method = candidate.selection.method();
     let start = Instant::now();
-    let verdict = subject.verifier.check(prepared, twin, *config, &path.views[frame], size, context.exact)?;
+    let verdict = subject.verifier.check(prepared, method, twin, *config, &path.views[frame], size, context.exact)?;
     checked.seconds += start.elapsed().as_secs_f64();
     checked.verification.push(Verification {
         frame,
@@ -271,9 +275,10 @@ fn compare_structures(
     context: &Context,
     subject: &mut Subject,
     record: &mut ConfigurationRecord,
+    rays: Rays,
     image: &Verdict,
 ) -> Option<String> {
-    let key = (record.config, Size { width: record.width, height: record.height });
+    let key = (record.config, Size { width: record.width, height: record.height }, rays);
     let own = (record.structure.clone(), image.image_hash.clone());
     let (first, hash) = subject.images.entry(key).or_insert(own);
     record.reference_image_hash = Some(hash.clone());

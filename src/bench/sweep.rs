@@ -200,7 +200,7 @@ impl Sweep<'_, '_> {
                 None => self.reopen()?,
             };
             let lost = {
-                let prepared = device.backend.prepare(scene, &built.structure, selection.traversal());
+                let prepared = device.backend.prepare(scene, &built.structure, selection.method());
                 if !recorded {
                     recorded = true;
                     candidate.memory = memory(built, scene, prepared.as_ref().ok().map(|p| p.allocated()));

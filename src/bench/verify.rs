@@ -12,11 +12,12 @@
 //! kernel. What really differs is recorded with every row.
 
 use crate::accel::brute;
-use crate::accel::{Structure, Traversal};
+use crate::accel::method::Rays;
+use crate::accel::{Method, Structure, Traversal};
 use crate::backend::{Backend, Config, CountedPixel, GivenRay, Pixel, PixelCounters, Prepared, Size};
 use crate::camera::View;
 use crate::cpu::{CpuBackend, render};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::scene::Scene;
 
 /// A colour channel may differ by this many of 255 levels: `pow` of both sides is good to a few units in the last place,
@@ -91,6 +92,8 @@ impl Answers {
 
 /// A reference image and how much of it brute force has confirmed.
 struct Reference {
+    /// What of the method decides which rays there are.
+    rays: Rays,
     config: Config,
     view: View,
     size: Size,
@@ -127,8 +130,8 @@ impl<'a> Verifier<'a> {
         Ok(Verifier { scene, cpu: CpuBackend::new(0)?, tree, brute, references: Vec::new() })
     }
 
-    /// Verifies one frame. With `twin`, hits and counters are also compared with the CPU twin of the same structure and
-    /// traversal, pixel by pixel (for small images); without, only with the reference image. `exact` demands agreement
+    /// Verifies one frame. With `twin`, hits and counters are also compared with the CPU twin of the same method on that
+    /// structure, pixel by pixel (for small images); without, only with the reference image. `exact` demands agreement
     /// to the bit (see [`crate::backend::DeviceInfo::is_exact`]).
     ///
     /// # Errors
@@ -136,7 +139,8 @@ impl<'a> Verifier<'a> {
     pub fn check(
         &mut self,
         prepared: &mut dyn Prepared,
-        twin: Option<(&Structure, Traversal)>,
+        method: Method,
+        twin: Option<&Structure>,
         config: Config,
         view: &View,
         size: Size,
@@ -148,28 +152,31 @@ impl<'a> Verifier<'a> {
             None => Answers { pixels: timed.clone(), distances: Vec::new(), counters: Vec::new() },
         };
         let own = match twin {
-            Some((structure, traversal)) => {
-                let mut twin = self.cpu.prepare(self.scene, structure, traversal)?;
+            Some(structure) => {
+                let mut twin = self.cpu.prepare(self.scene, structure, method)?;
                 Some(Answers::counted(twin.as_mut(), config, view, size)?)
             }
             None => None,
         };
-        let reference = self.reference(config, view, size)?;
+        let reference = self.reference(method, config, view, size)?;
         Ok(judge(&timed, &found, own.as_ref(), reference, exact))
     }
 
     /// The reference for a view; computed the first time.
-    fn reference(&mut self, config: Config, view: &View, size: Size) -> Result<&Reference> {
-        let place = self.references.iter().position(|r| r.config == config && r.size == size && r.view == *view);
+    fn reference(&mut self, method: Method, config: Config, view: &View, size: Size) -> Result<&Reference> {
+        let rays = method.rays();
+        let same = |r: &Reference| r.rays == rays && r.config == config && r.size == size && r.view == *view;
+        let place = self.references.iter().position(same);
         let place = match place {
             Some(place) => place,
             None => {
-                let mut twin = self.cpu.prepare(self.scene, self.tree, Traversal::BvhStack)?;
+                let own = Method { traversal: Traversal::BvhStack, tiles: 1, ..method };
+                let mut twin = self.cpu.prepare(self.scene, self.tree, own)?;
                 let mut answers = Answers::counted(twin.as_mut(), config, view, size)?;
                 answers.counters = Vec::new();
-                let (brute_checked, brute_differing) = self.check_by_brute_force(&answers, config, view, size)?;
+                let (brute_checked, brute_differing) = self.check_by_brute_force(&answers, own, config, view, size)?;
                 let view = view.clone();
-                self.references.push(Reference { config, view, size, answers, brute_checked, brute_differing });
+                self.references.push(Reference { rays, config, view, size, answers, brute_checked, brute_differing });
                 self.references.len() - 1
             }
         };
@@ -178,17 +185,30 @@ impl<'a> Verifier<'a> {
 
     /// Tests every triangle for as many primary rays, evenly spread, as [`BRUTE_TESTS`] allows: how many rays were
     /// checked, and for how many the answer differs.
-    fn check_by_brute_force(&self, answers: &Answers, config: Config, view: &View, size: Size) -> Result<(u64, u64)> {
+    fn check_by_brute_force(
+        &self,
+        answers: &Answers,
+        method: Method,
+        config: Config,
+        view: &View,
+        size: Size,
+    ) -> Result<(u64, u64)> {
         // The same primary rays have been checked for another configuration
-        let known =
-            self.references.iter().find(|r| r.size == size && r.view.camera == view.camera && r.config != config);
+        let same = |r: &&Reference| {
+            r.rays.pattern == method.pattern
+                && r.rays.group == method.rays().group
+                && r.size == size
+                && r.view.camera == view.camera
+                && r.config != config
+        };
+        let known = self.references.iter().find(same);
         if let Some(known) = known {
             return Ok((known.brute_checked, known.brute_differing));
         }
         let rays = (BRUTE_TESTS / self.scene.triangles.len().max(1)).clamp(64, size.pixels().max(1)).min(size.pixels());
         let chosen: Vec<usize> = (0..rays).map(|i| (i as u64 * size.pixels() as u64 / rays as u64) as usize).collect();
-        let given: Vec<GivenRay> = chosen.iter().map(|&pixel| render::primary_ray(view, size, pixel)).collect();
-        let hits = self.cpu.prepare(self.scene, &self.brute, Traversal::Brute)?.trace(&given, false)?;
+        let given: Vec<GivenRay> = chosen.iter().map(|&pixel| render::primary_ray(method, view, size, pixel)).collect();
+        let hits = self.cpu.prepare(self.scene, &self.brute, Traversal::Brute.into())?.trace(&given, false)?;
         let differing = hits.iter().zip(&chosen).filter(|&(hit, &pixel)| {
             hit.triangle != answers.pixels[pixel].triangle || hit.t.to_bits() != answers.distances[pixel].to_bits()
         });
@@ -301,19 +321,5 @@ impl Differences {
             out.copy_from_slice(&colour);
         }
         picture
-    }
-}
-
-/// Refuses sizes whose images do not fit into memory sensibly: more than 2^28 pixels.
-///
-/// # Errors
-/// [`Error::Input`], naming the flag.
-pub fn check_size(size: Size) -> Result<()> {
-    match size.pixels() {
-        0 => Err(Error::argument("--resolution", "an image needs at least one pixel", "for example 256 or 640x480")),
-        pixels if pixels > 1 << 28 => {
-            Err(Error::argument("--resolution", format!("{pixels} pixels are too many"), "at most 16384x16384"))
-        }
-        _ => Ok(()),
     }
 }

@@ -111,7 +111,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     plan::check_size(size, device.backend.info())?;
     device::announce(&device);
     let built = selection.build(&scene, arguments.device.threads)?;
-    let mut prepared = device.backend.prepare(&scene, &built.structure, selection.traversal())?;
+    let mut prepared = device.backend.prepare(&scene, &built.structure, selection.method())?;
     let rgba = match arguments.heatmap {
         None => {
             let pixels = prepared.image(config, view, size)?;

@@ -20,9 +20,13 @@ pub fn run(_: &Arguments) -> Result<()> {
         if !variant.paper.is_empty() {
             text += &format!("      after {}\n", variant.paper);
         }
-        for option in variant.options {
+        for option in variant.build_options.iter().chain(variant.walk_options) {
             text += &format!("      {:<14} {} (default {})\n", option.key, option.meaning, option.default);
         }
+    }
+    text += "\nOptions of all structures\n";
+    for option in accel::COMMON_OPTIONS {
+        text += &format!("      {:<14} {} (default {})\n", option.key, option.meaning, option.default);
     }
     output::print(&text)
 }

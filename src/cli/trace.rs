@@ -58,7 +58,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let device = arguments.device.open()?;
     device::announce(&device);
     let built = selection.build(&scene, arguments.device.threads)?;
-    let mut prepared = device.backend.prepare(&scene, &built.structure, selection.traversal())?;
+    let mut prepared = device.backend.prepare(&scene, &built.structure, selection.method())?;
     let hits = prepared.trace(&rays, arguments.any_hit)?;
     rays::write(&arguments.out, &hits)?;
     let found = hits.iter().filter(|hit| hit.triangle != MISS).count();

@@ -4,8 +4,9 @@ use super::count::{Count, CountOff};
 use super::render::Frame;
 use super::trace::trace_group;
 use super::traverse::bvh_stack::STACK_SIZE;
-use super::traverse::{GROUP, Traverse, Triangles, brute, bvh, bvh_stack, grid, kdtree};
-use crate::accel::{Record, Structure, Traversal};
+use super::traverse::{GROUP, Traverse, Triangles, brute, bvh, bvh_stack, grid, grid_coop, grid_packet, kdtree};
+use crate::accel::method::{Group, MAX_SHORT_STACK};
+use crate::accel::{Method, Record, Structure, Traversal};
 use crate::backend::*;
 use crate::camera::View;
 use crate::error::{Error, Result};
@@ -68,7 +69,7 @@ impl Backend for CpuBackend {
         &'a self,
         scene: &'a Scene,
         structure: &'a Structure,
-        traversal: Traversal,
+        method: Method,
     ) -> Result<Box<dyn Prepared + 'a>> {
         let triangles = |records| Triangles { vertices: &scene.vertices, records };
         let check_depth = |depth: u32| match (depth as usize) + 1 < STACK_SIZE {
@@ -77,30 +78,50 @@ impl Backend for CpuBackend {
                 Err(Error::Device(format!("the tree is {depth} levels deep, the twins' stack holds {STACK_SIZE}")))
             }
         };
-        Ok(match (structure, traversal) {
+        if method.traversal.is_together() && method.group.size() as usize > GROUP {
+            let Group { width, height } = method.group;
+            return Err(Error::Device(format!("a packet of {width}x{height} is larger than {GROUP} rays")));
+        }
+        Ok(match (structure, method.traversal) {
             (Structure::Brute(b), Traversal::Brute) => {
                 let triangles = triangles(&b.records);
-                self.with(scene, structure, triangles, brute::Brute { triangles })
+                self.with((scene, structure, triangles), method, brute::Brute { triangles })
             }
             (Structure::Grid(g), Traversal::Grid) => {
                 let triangles = triangles(&g.records);
-                self.with(scene, structure, triangles, grid::Grid::new(triangles, g))
+                self.with((scene, structure, triangles), method, grid::Grid::new(triangles, g))
             }
-            (Structure::KdTree(tree), Traversal::KdTree) => {
+            (Structure::Grid(g), Traversal::GridCoop) => {
+                let triangles = triangles(&g.records);
+                let grid = grid::Grid::new(triangles, g);
+                self.with((scene, structure, triangles), method, grid_coop::GridCoop { grid })
+            }
+            (Structure::Grid(g), Traversal::GridPacket) => {
+                let triangles = triangles(&g.records);
+                let grid = grid::Grid::new(triangles, g);
+                self.with((scene, structure, triangles), method, grid_packet::GridPacket { grid })
+            }
+            (Structure::KdTree(tree), Traversal::KdTree(search)) => {
                 let triangles = triangles(&tree.records);
-                self.with(scene, structure, triangles, kdtree::KdTree { triangles, tree })
+                if search.stack as usize <= kdtree::SMALL {
+                    let twin = kdtree::KdTree::<{ kdtree::SMALL }> { triangles, tree, search };
+                    self.with((scene, structure, triangles), method, twin)
+                } else {
+                    let twin = kdtree::KdTree::<{ MAX_SHORT_STACK as usize }> { triangles, tree, search };
+                    self.with((scene, structure, triangles), method, twin)
+                }
             }
-            (Structure::Bvh(b), Traversal::Bvh) => {
+            (Structure::Bvh(b), Traversal::Bvh(vote)) => {
                 check_depth(b.depth)?;
                 let triangles = triangles(&b.records);
-                self.with(scene, structure, triangles, bvh::Bvh::new(triangles, b))
+                self.with((scene, structure, triangles), method, bvh::Bvh::new(triangles, b, vote))
             }
             (Structure::Bvh(b), Traversal::BvhStack) => {
                 check_depth(b.depth)?;
                 let triangles = triangles(&b.records);
-                self.with(scene, structure, triangles, bvh_stack::BvhStack::new(triangles, b))
+                self.with((scene, structure, triangles), method, bvh_stack::BvhStack::new(triangles, b))
             }
-            _ => return Err(Error::Device(format!("{traversal:?} cannot walk this structure"))),
+            _ => return Err(Error::Device(format!("{:?} cannot walk this structure", method.traversal))),
         })
     }
 }
@@ -108,13 +129,13 @@ impl Backend for CpuBackend {
 impl CpuBackend {
     fn with<'a, T: Traverse + 'a>(
         &'a self,
-        scene: &'a Scene,
-        structure: &'a Structure,
-        triangles: Triangles<'a>,
+        (scene, structure, triangles): (&'a Scene, &'a Structure, Triangles<'a>),
+        method: Method,
         traversal: T,
     ) -> Box<dyn Prepared + 'a> {
         let epsilon = surface_epsilon(scene.bounds());
-        Box::new(CpuPrepared { pool: &self.pool, scene, structure, triangles, traversal, epsilon, timed: Vec::new() })
+        let (pool, timed) = (&self.pool, Vec::new());
+        Box::new(CpuPrepared { pool, scene, structure, triangles, method, traversal, epsilon, timed })
     }
 }
 
@@ -123,6 +144,7 @@ struct CpuPrepared<'a, T> {
     scene: &'a Scene,
     structure: &'a Structure,
     triangles: Triangles<'a>,
+    method: Method,
     traversal: T,
     epsilon: f32,
     /// The timed image, kept between frames like a device's buffer.
@@ -130,20 +152,20 @@ struct CpuPrepared<'a, T> {
 }
 
 impl<'a, T: Traverse> CpuPrepared<'a, T> {
-    /// Renders rows `first_row..` as many as `out` holds, whole groups of rows at a time, in parallel.
+    /// Renders a tile into `out`, which holds its rows in full width; whole groups of rows at a time, in parallel.
     fn render<C: Count, P: Copy + Send>(
         &self,
         frame: &Frame,
-        first_row: u32,
+        tile: Tile,
         out: &mut [P],
         convert: impl Fn(CountedPixel) -> P + Sync,
     ) {
         let width = frame.size.width;
-        let strip = (width * GROUP_SIDE) as usize;
+        let strip = (width * frame.group.height) as usize;
         self.pool.install(|| {
             out.par_chunks_mut(strip).enumerate().for_each(|(index, pixels)| {
-                let top = first_row + index as u32 * GROUP_SIDE;
-                for column in (0..width).step_by(GROUP_SIDE as usize) {
+                let top = tile.row + index as u32 * frame.group.height;
+                for column in (tile.column..tile.column + tile.columns).step_by(frame.group.width as usize) {
                     frame.render_group::<T, C>(&self.traversal, (column, top), |x, y, pixel| {
                         pixels[((y - top) * width + x) as usize] = convert(pixel);
                     });
@@ -156,19 +178,26 @@ impl<'a, T: Traverse> CpuPrepared<'a, T> {
     where
         'a: 'f,
     {
-        Frame::new(self.scene, self.triangles, config, view, size, self.epsilon)
+        Frame::new(self.scene, self.triangles, self.method, (config, view, size), self.epsilon)
+    }
+
+    /// A whole frame, tile by tile.
+    fn timed_frame(&self, config: Config, view: &View, size: Size, pixels: &mut [Pixel]) {
+        let frame = self.frame(config, view, size);
+        for tile in tiles(size, self.method.tiles, self.method.tiles, frame.group) {
+            let rows = &mut pixels[(tile.row * size.width) as usize..][..(tile.rows * size.width) as usize];
+            self.render::<CountOff, _>(&frame, tile, rows, |p| p.pixel);
+        }
     }
 }
 
-/// Rows per band of the counting pass: about 256k pixels.
-fn band_rows(size: Size) -> u32 {
-    (262_144 / size.width).max(1).next_multiple_of(GROUP_SIDE)
-}
+/// Pixels per band of the counting pass, about.
+const BAND_PIXELS: u32 = 262_144;
 
 impl<T: Traverse> Prepared for CpuPrepared<'_, T> {
     fn image(&mut self, config: Config, view: &View, size: Size) -> Result<Vec<Pixel>> {
         let mut pixels = vec![Pixel { triangle: POISON, rgba: POISON }; size.pixels()];
-        self.render::<CountOff, _>(&self.frame(config, view, size), 0, &mut pixels, |p| p.pixel);
+        self.timed_frame(config, view, size, &mut pixels);
         Ok(pixels)
     }
 
@@ -180,13 +209,12 @@ impl<T: Traverse> Prepared for CpuPrepared<'_, T> {
         band: &mut dyn FnMut(u32, &[CountedPixel]),
     ) -> Result<()> {
         let frame = self.frame(config, view, size);
-        for first_row in (0..size.height).step_by(band_rows(size) as usize) {
-            let rows = band_rows(size).min(size.height - first_row);
+        for tile in tiles(size, 1, (size.pixels() as u32).div_ceil(BAND_PIXELS), frame.group) {
             let mut poison = CountedPixel::zeroed();
             poison.pixel = Pixel { triangle: POISON, rgba: POISON };
-            let mut pixels = vec![poison; (rows * size.width) as usize];
-            self.render::<Counters, _>(&frame, first_row, &mut pixels, |p| p);
-            band(first_row, &pixels);
+            let mut pixels = vec![poison; (tile.rows * size.width) as usize];
+            self.render::<Counters, _>(&frame, tile, &mut pixels, |p| p);
+            band(tile.row, &pixels);
         }
         Ok(())
     }
@@ -206,7 +234,7 @@ impl<T: Traverse> Prepared for CpuPrepared<'_, T> {
             if interrupted() {
                 return Err(Error::Interrupted);
             }
-            self.render::<CountOff, _>(&self.frame(config, view, size), 0, &mut pixels, |p| p.pixel);
+            self.timed_frame(config, view, size, &mut pixels);
             let now = Instant::now();
             times.push(FrameTime { device_ns: None, wall_ns: (now - last).as_nanos() as u64 });
             last = now;

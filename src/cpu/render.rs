@@ -4,6 +4,8 @@
 use super::count::Count;
 use super::shade::{Surface, phong, reflected_ray, rgba8, surface_at, unit};
 use super::traverse::{GROUP, Lanes, Traverse, Triangles, bits};
+use crate::accel::Method;
+use crate::accel::method::{Group, Pattern, ShadowRays};
 use crate::backend::{Config, CountedPixel, GivenRay, Pixel, Size};
 use crate::camera::{PixelGrid, View};
 use crate::math::{MISS, Ray, T_MAX};
@@ -14,12 +16,7 @@ const PRIMARY: usize = 0;
 const SHADOW: usize = 1;
 const REFLECTED: usize = 2;
 
-/// Place of a lane in its group of pixels: Morton order.
-fn place_in_group(i: u32) -> (u32, u32) {
-    ((i & 1) | (i >> 1 & 2) | (i >> 2 & 4), (i >> 1 & 1) | (i >> 2 & 2) | (i >> 3 & 4))
-}
-
-/// One frame: the twin of the kernel's `Frame` and of its constants SHADOWS and BOUNCES.
+/// One frame: the twin of the kernel's `Frame` and of its constants.
 pub struct Frame<'a> {
     /// Geometry, materials.
     pub scene: &'a Scene,
@@ -29,16 +26,30 @@ pub struct Frame<'a> {
     pub config: Config,
     /// Image size.
     pub size: Size,
+    /// Rays that go together: the method's work-group where that matters to the traversal, otherwise 8 x 8.
+    pub group: Group,
+    method: Method,
     grid: PixelGrid,
     lights: &'a [Light],
     epsilon: f32,
 }
 
 /// The primary ray of a pixel (rows from the top), exactly as a frame casts it.
-pub fn primary_ray(view: &View, size: Size, pixel: usize) -> GivenRay {
+pub fn primary_ray(method: Method, view: &View, size: Size, pixel: usize) -> GivenRay {
     let grid = view.camera.pixel_grid(size.width, size.height);
-    let (column, row) = (pixel as u32 % size.width, pixel as u32 / size.width);
+    let (column, row) = seen_by(method, size, pixel as u32 % size.width, pixel as u32 / size.width);
     GivenRay { origin: grid.origin, direction: pixel_direction(&grid, column, row).into() }
+}
+
+/// The pixel through which the ray of a pixel goes: itself, or one of four.
+fn seen_by(method: Method, size: Size, column: u32, row: u32) -> (u32, u32) {
+    match method.pattern {
+        Pattern::Image => (column, row),
+        Pattern::Four => {
+            let one_of = |place: u32, group: u32, side: u32| side / 4 + (place / group & 1) * (side / 2);
+            (one_of(column, method.group.width, size.width), one_of(row, method.group.height, size.height))
+        }
+    }
 }
 
 fn pixel_direction(grid: &PixelGrid, column: u32, row: u32) -> Vec3A {
@@ -47,21 +58,30 @@ fn pixel_direction(grid: &PixelGrid, column: u32, row: u32) -> Vec3A {
     unit(Vec3A::from(grid.corner) + Vec3A::from(grid.right) * x + Vec3A::from(grid.down) * y)
 }
 
+/// Between light and point, of which one lies at distance 0 and the other at distance 1.
+fn shadow_ray(direction: ShadowRays, light: Vec3A, point: Vec3A) -> Ray {
+    match direction {
+        ShadowRays::FromLight => Ray::new(light, point - light),
+        ShadowRays::ToLight => Ray::new(point, light - point),
+    }
+}
+
 impl<'a> Frame<'a> {
     /// A frame of a view. `epsilon` is [`crate::backend::surface_epsilon`] of the scene.
     pub fn new(
         scene: &'a Scene,
         triangles: Triangles<'a>,
-        config: Config,
-        view: &'a View,
-        size: Size,
+        method: Method,
+        (config, view, size): (Config, &'a View, Size),
         epsilon: f32,
     ) -> Self {
         let grid = view.camera.pixel_grid(size.width, size.height);
-        Frame { scene, triangles, config, size, grid, lights: &view.lights, epsilon }
+        let group = if method.traversal.is_together() { method.group } else { Group::SQUARE };
+        Frame { scene, triangles, config, size, group, method, grid, lights: &view.lights, epsilon }
     }
 
     fn primary_ray(&self, column: u32, row: u32) -> Ray {
+        let (column, row) = seen_by(self.method, self.size, column, row);
         Ray::new(self.grid.origin.into(), pixel_direction(&self.grid, column, row))
     }
 
@@ -74,10 +94,10 @@ impl<'a> Frame<'a> {
         mut store: impl FnMut(u32, u32, CountedPixel),
     ) {
         let place = |lane: usize| {
-            let (x, y) = place_in_group(lane as u32);
+            let (x, y) = self.group.place(lane as u32);
             (column + x, row + y)
         };
-        let inside = (0..GROUP)
+        let inside = (0..self.group.size() as usize)
             .filter(|&lane| place(lane).0 < self.size.width && place(lane).1 < self.size.height)
             .fold(0u64, |set, lane| set | 1 << lane);
         let mut counters = [[C::default(); GROUP]; 3];
@@ -121,11 +141,9 @@ impl<'a> Frame<'a> {
             for light in self.lights {
                 let mut lit = alive;
                 if self.config.shadows() {
-                    // From the light towards the point, which lies at distance 1
-                    let origin = Vec3A::from(light.position);
-                    let towards =
-                        |lane: usize| surfaces[lane].map_or(rays[lane], |s| Ray::new(origin, s.point - origin));
-                    let shadows: Lanes<Ray> = std::array::from_fn(towards);
+                    let position = Vec3A::from(light.position);
+                    let shadow = |s: Surface| shadow_ray(self.method.shadows, position, s.point);
+                    let shadows: Lanes<Ray> = std::array::from_fn(|lane| surfaces[lane].map_or(rays[lane], shadow));
                     bits(alive).for_each(|lane| counters[SHADOW][lane].ray());
                     lit &= !traversal.any_hits(&shadows, 1.0, alive, &mut counters[SHADOW]);
                 }

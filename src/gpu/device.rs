@@ -3,7 +3,7 @@
 use super::adapters::{Selector, choose, describe, enumerate, wanted_features};
 use super::kernels::{Entry, Kernel};
 use super::prepared::GpuPrepared;
-use crate::accel::{Structure, Traversal};
+use crate::accel::{Method, Structure};
 use crate::backend::{Backend, DeviceInfo, DeviceType, Prepared};
 use crate::error::{Error, Result};
 use crate::scene::Scene;
@@ -98,8 +98,12 @@ impl GpuBackend {
         lock(&self.trouble).lost.get_or_insert("destroyed".into());
     }
 
-    pub(super) fn software(&self) -> bool {
-        self.info.device_type == DeviceType::SoftwareRasteriser
+    /// Threads of a driver that computes on the CPU; 0 for a GPU.
+    pub(super) fn software_threads(&self) -> u32 {
+        match self.info.device_type {
+            DeviceType::SoftwareRasteriser => self.info.threads.unwrap_or(1) as u32,
+            _ => 0,
+        }
     }
 
     /// Turns what the driver has reported meanwhile into an error.
@@ -137,7 +141,7 @@ impl GpuBackend {
             label: Some(&kernel.label()),
             source: wgpu::ShaderSource::Wgsl(source.text.as_str().into()),
         };
-        let checks = match self.options.checked {
+        let checks = match self.options.checked || kernel.method.checked {
             true => wgpu::ShaderRuntimeChecks::checked(),
             false => wgpu::ShaderRuntimeChecks::unchecked(),
         };
@@ -158,9 +162,9 @@ impl GpuBackend {
             module: &module,
             entry_point: Some("main"),
             compilation_options: wgpu::PipelineCompilationOptions {
-                // Only the packet's tallies rely on work-group memory that begins as zero; clearing the short stack
+                // Only the tallies of packets rely on work-group memory that begins as zero; clearing the short stack
                 // would be measured with every group.
-                zero_initialize_workgroup_memory: kernel.traversal == Traversal::Bvh,
+                zero_initialize_workgroup_memory: kernel.method.traversal.is_together(),
                 ..Default::default()
             },
             cache: None,
@@ -207,9 +211,9 @@ impl Backend for GpuBackend {
         &'a self,
         scene: &'a Scene,
         structure: &'a Structure,
-        traversal: Traversal,
+        method: Method,
     ) -> Result<Box<dyn Prepared + 'a>> {
-        Ok(Box::new(GpuPrepared::new(self, scene, structure, traversal)?))
+        Ok(Box::new(GpuPrepared::new(self, scene, structure, method)?))
     }
 }
 

@@ -1,7 +1,8 @@
 //! Assembles a kernel: an entry file, a traversal, a set of constants. WGSL has no include and an `override` may not
 //! size an array, so that both are done here, in text; a line map turns naga's lines back into files and lines.
 
-use crate::accel::Traversal;
+use crate::accel::method::{Pattern, ShadowRays, Vote};
+use crate::accel::{Method, Traversal};
 use crate::backend::Config;
 use crate::math;
 use std::fmt::Write;
@@ -19,16 +20,18 @@ pub const FILES: &[(&str, &str)] = &[
     ("lib/store_counted.wgsl", include_str!("../../kernels/lib/store_counted.wgsl")),
     ("lib/alone.wgsl", include_str!("../../kernels/lib/alone.wgsl")),
     ("lib/together.wgsl", include_str!("../../kernels/lib/together.wgsl")),
+    ("lib/grid.wgsl", include_str!("../../kernels/lib/grid.wgsl")),
+    ("lib/short_stack_workgroup.wgsl", include_str!("../../kernels/lib/short_stack_workgroup.wgsl")),
+    ("lib/short_stack_private.wgsl", include_str!("../../kernels/lib/short_stack_private.wgsl")),
     ("lib/bvh.wgsl", include_str!("../../kernels/lib/bvh.wgsl")),
     ("traverse/brute.wgsl", include_str!("../../kernels/traverse/brute.wgsl")),
     ("traverse/grid.wgsl", include_str!("../../kernels/traverse/grid.wgsl")),
+    ("traverse/grid_coop.wgsl", include_str!("../../kernels/traverse/grid_coop.wgsl")),
+    ("traverse/grid_packet.wgsl", include_str!("../../kernels/traverse/grid_packet.wgsl")),
     ("traverse/kdtree.wgsl", include_str!("../../kernels/traverse/kdtree.wgsl")),
     ("traverse/bvh.wgsl", include_str!("../../kernels/traverse/bvh.wgsl")),
     ("traverse/bvh_stack.wgsl", include_str!("../../kernels/traverse/bvh_stack.wgsl")),
 ];
-
-/// Entries of the kd-tree's short stack (SPEC section 3); a power of two.
-pub const SHORT_STACK: u32 = 4;
 
 /// Which entry file, and how it is specialised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -52,12 +55,13 @@ pub enum Entry {
 pub struct Kernel {
     /// Entry file and its constants.
     pub entry: Entry,
-    /// File in `traverse/`.
-    pub traversal: Traversal,
+    /// File in `traverse/`, and constants.
+    pub method: Method,
     /// Entries of a full stack, see [`stack_size`].
     pub stack_size: u32,
-    /// For a driver that computes on the CPU: the same results by operations that are cheaper there.
-    pub software: bool,
+    /// Threads of a driver that computes on the CPU, where the same results come by operations that are cheaper there; 0
+    /// for a GPU.
+    pub software_threads: u32,
 }
 
 /// Stack entries for a tree of `depth` levels and the EMPTY at the bottom: a multiple of 32, so that few different
@@ -95,8 +99,10 @@ pub fn traversal_file(traversal: Traversal) -> &'static str {
     match traversal {
         Traversal::Brute => "traverse/brute.wgsl",
         Traversal::Grid => "traverse/grid.wgsl",
-        Traversal::KdTree => "traverse/kdtree.wgsl",
-        Traversal::Bvh => "traverse/bvh.wgsl",
+        Traversal::GridCoop => "traverse/grid_coop.wgsl",
+        Traversal::GridPacket => "traverse/grid_packet.wgsl",
+        Traversal::KdTree(_) => "traverse/kdtree.wgsl",
+        Traversal::Bvh(_) => "traverse/bvh.wgsl",
         Traversal::BvhStack => "traverse/bvh_stack.wgsl",
     }
 }
@@ -104,7 +110,7 @@ pub fn traversal_file(traversal: Traversal) -> &'static str {
 impl Kernel {
     /// A name for labels and messages.
     pub fn label(&self) -> String {
-        let traversal = traversal_file(self.traversal).trim_start_matches("traverse/").trim_end_matches(".wgsl");
+        let traversal = traversal_file(self.method.traversal).trim_start_matches("traverse/").trim_end_matches(".wgsl");
         match self.entry {
             Entry::Render { config, counting } => {
                 format!("{traversal} {config:?}{}", if counting { " counting" } else { "" })
@@ -122,9 +128,12 @@ impl Kernel {
             Entry::Render { counting, .. } => ("render.wgsl", counting),
             Entry::Trace { .. } => ("trace.wgsl", false),
         };
+        let private = matches!(self.method.traversal, Traversal::KdTree(search) if search.private);
+        let short_stack = if private { "lib/short_stack_private.wgsl" } else { "lib/short_stack_workgroup.wgsl" };
         let mut assembly = Assembly {
             slots: [
-                ("traversal", traversal_file(self.traversal)),
+                ("short_stack", short_stack),
+                ("traversal", traversal_file(self.method.traversal)),
                 ("counting", if counting { "lib/count_on.wgsl" } else { "lib/count_off.wgsl" }),
                 ("store", if counting { "lib/store_counted.wgsl" } else { "lib/store_timed.wgsl" }),
             ],
@@ -147,13 +156,26 @@ impl Kernel {
         float("DETERMINANT_MIN", math::DETERMINANT_MIN);
         let mut word = |name: &str, value: u32| writeln!(text, "const {name}: u32 = {value}u;").unwrap();
         word("MISS", math::MISS);
-        word("SHORT_STACK", SHORT_STACK);
         word("STACK_SIZE", self.stack_size);
+        word("GROUP_WIDTH", self.method.group.width);
+        word("GROUP_HEIGHT", self.method.group.height);
+        word("GROUP_SIZE", self.method.group.size());
+        word("THREADS", self.software_threads.max(1));
+        if let Traversal::KdTree(search) = self.method.traversal {
+            word("SHORT_STACK", search.stack);
+        }
         let mut flag = |name: &str, value: bool| writeln!(text, "const {name}: bool = {value};").unwrap();
-        flag("SOFTWARE", self.software);
+        flag("SOFTWARE", self.software_threads > 0);
+        match self.method.traversal {
+            Traversal::KdTree(search) => flag("PUSHDOWN", search.pushdown),
+            Traversal::Bvh(vote) => flag("ORIGINAL_VOTE", vote == Vote::Original),
+            _ => {}
+        }
         match self.entry {
             Entry::Render { config, .. } => {
                 flag("SHADOWS", config.shadows());
+                flag("TO_LIGHT", self.method.shadows == ShadowRays::ToLight);
+                flag("FOUR_RAYS", self.method.pattern == Pattern::Four);
                 writeln!(text, "const BOUNCES: u32 = {}u;", config.bounces()).unwrap();
             }
             Entry::Trace { any_hit } => flag("ANY_HIT", any_hit),
@@ -163,7 +185,7 @@ impl Kernel {
 }
 
 struct Assembly {
-    slots: [(&'static str, &'static str); 3],
+    slots: [(&'static str, &'static str); 4],
     seen: Vec<&'static str>,
     source: Source,
 }
@@ -201,17 +223,45 @@ impl Assembly {
     }
 }
 
+/// Every method of which a kernel exists in its own right: each traversal, and each way to specialise one.
+pub fn methods() -> Vec<Method> {
+    use crate::accel::method::{Group, KdSearch, MAX_SHORT_STACK};
+    let thesis = KdSearch::THESIS;
+    let searches = [
+        thesis,
+        KdSearch { private: true, ..thesis },
+        KdSearch { stack: 0, ..thesis },
+        KdSearch { stack: 0, pushdown: false, ..thesis },
+        KdSearch { stack: 3, ..thesis },
+        KdSearch { stack: MAX_SHORT_STACK, ..thesis },
+    ];
+    let alone =
+        [Traversal::Brute, Traversal::Grid, Traversal::BvhStack].into_iter().chain(searches.map(Traversal::KdTree));
+    let together =
+        [Traversal::GridCoop, Traversal::GridPacket, Traversal::Bvh(Vote::Corrected), Traversal::Bvh(Vote::Original)];
+    let mut methods: Vec<Method> = alone.chain(together).map(Method::from).collect();
+    let packets = [(8, 4), (4, 4)].map(|(width, height)| Group { width, height });
+    methods.extend(packets.iter().flat_map(|&group| together.map(|t| Method { group, ..t.into() })));
+    let plain = Method::from(Traversal::BvhStack);
+    methods.extend([
+        Method { shadows: ShadowRays::ToLight, ..plain },
+        Method { pattern: Pattern::Four, ..plain },
+        Method { group: Group { width: 64, height: 1 }, ..plain },
+        Method { group: Group { width: 16, height: 16 }, ..plain },
+    ]);
+    methods
+}
+
 /// All variants that the program can run, with a stack of 32: what the static checks go through.
 pub fn all() -> Vec<Kernel> {
-    let traversals = [Traversal::Brute, Traversal::Grid, Traversal::KdTree, Traversal::Bvh, Traversal::BvhStack];
     let mut entries: Vec<Entry> = [false, true].map(|any_hit| Entry::Trace { any_hit }).to_vec();
     for config in Config::ALL {
         entries.extend([false, true].map(|counting| Entry::Render { config, counting }));
     }
     let mut all = Vec::new();
-    for traversal in traversals {
+    for method in methods() {
         for &entry in &entries {
-            all.extend([false, true].map(|software| Kernel { entry, traversal, stack_size: 32, software }));
+            all.extend([0, 2].map(|software_threads| Kernel { entry, method, stack_size: 32, software_threads }));
         }
     }
     all

@@ -4,7 +4,7 @@ use super::device::{Compiled, GpuBackend};
 use super::kernels::{Entry, Kernel, stack_size};
 use super::shared::{FrameUniform, TraceRay};
 use super::upload::Uploaded;
-use crate::accel::{Structure, Traversal};
+use crate::accel::{Method, Structure, Traversal};
 use crate::backend::*;
 use crate::camera::View;
 use crate::error::{Error, Result};
@@ -27,7 +27,7 @@ pub(super) struct GpuPrepared<'a> {
     backend: &'a GpuBackend,
     scene: &'a Scene,
     uploaded: Uploaded,
-    traversal: Traversal,
+    method: Method,
     stack_size: u32,
     epsilon: f32,
     /// Bands per frame that keep a dispatch below the watchdog, by configuration and size.
@@ -39,32 +39,32 @@ struct Frames {
     uniforms: wgpu::Buffer,
     lights: wgpu::Buffer,
     stride: u32,
-    /// Rows of each uniform's band, and columns: what is dispatched.
+    /// Work-groups of each uniform's part, columns and rows: what is dispatched.
     groups: Vec<(u32, u32)>,
 }
 
-/// A band of rows: first row, number of rows, first pixel in the output.
-type Band = (u32, u32, u32);
+/// A part of an image, and the pixel of the output where it would begin if it had all columns.
+type Part = (Tile, u32);
 
 impl<'a> GpuPrepared<'a> {
     pub fn new(
         backend: &'a GpuBackend,
         scene: &'a Scene,
         structure: &'a Structure,
-        traversal: Traversal,
+        method: Method,
     ) -> Result<GpuPrepared<'a>> {
-        let depth = match (structure, traversal) {
+        let depth = match (structure, method.traversal) {
             (Structure::Brute(_), Traversal::Brute)
-            | (Structure::Grid(_), Traversal::Grid)
-            | (Structure::KdTree(_), Traversal::KdTree) => 0,
-            (Structure::Bvh(bvh), Traversal::Bvh | Traversal::BvhStack) => bvh.depth,
-            _ => return Err(Error::Device(format!("{traversal:?} cannot walk this structure"))),
+            | (Structure::Grid(_), Traversal::Grid | Traversal::GridCoop | Traversal::GridPacket)
+            | (Structure::KdTree(_), Traversal::KdTree(_)) => 0,
+            (Structure::Bvh(bvh), Traversal::Bvh(_) | Traversal::BvhStack) => bvh.depth,
+            _ => return Err(Error::Device(format!("{:?} cannot walk this structure", method.traversal))),
         };
         Ok(GpuPrepared {
             backend,
             scene,
             uploaded: backend.upload(scene, structure)?,
-            traversal,
+            method,
             stack_size: stack_size(depth),
             epsilon: surface_epsilon(scene.bounds()),
             bands: HashMap::new(),
@@ -72,37 +72,44 @@ impl<'a> GpuPrepared<'a> {
     }
 
     fn kernel(&self, entry: Entry) -> Kernel {
-        Kernel { entry, traversal: self.traversal, stack_size: self.stack_size, software: self.backend.software() }
+        let software_threads = self.backend.software_threads();
+        Kernel { entry, method: self.method, stack_size: self.stack_size, software_threads }
     }
 
-    /// Uploads the uniforms of all bands of all views.
-    fn frames(&self, views: &[View], size: Size, bands: &[Band]) -> Result<Frames> {
+    /// Uploads the uniforms of all parts of all views.
+    fn frames(&self, views: &[View], size: Size, parts: &[Part]) -> Result<Frames> {
         let stride = (size_of::<FrameUniform>() as u32)
             .next_multiple_of(self.backend.limits.min_uniform_buffer_offset_alignment);
-        let mut uniforms = Vec::with_capacity(views.len() * bands.len() * stride as usize);
+        let mut uniforms = Vec::with_capacity(views.len() * parts.len() * stride as usize);
         let mut lights: Vec<Light> = Vec::new();
-        let mut groups = Vec::with_capacity(views.len() * bands.len());
+        let mut groups = Vec::with_capacity(views.len() * parts.len());
         for view in views {
             let grid = view.camera.pixel_grid(size.width, size.height);
-            for &(first_row, rows, first_pixel) in bands {
+            for &(tile, first_pixel) in parts {
                 let uniform = FrameUniform {
                     origin: grid.origin,
                     width: size.width,
                     corner: grid.corner,
-                    first_row,
+                    first_row: tile.row,
                     right: grid.right,
-                    rows,
+                    rows: tile.rows,
                     down: grid.down,
                     epsilon: self.epsilon,
                     background: self.scene.background,
                     light_count: view.lights.len() as u32,
                     first_light: lights.len() as u32,
                     first_pixel,
-                    pad: [0; 2],
+                    first_column: tile.column,
+                    columns: tile.columns,
+                    height: size.height,
+                    pad: [0; 3],
                 };
                 uniforms.extend_from_slice(bytemuck::bytes_of(&uniform));
                 uniforms.resize(uniforms.len().next_multiple_of(stride as usize), 0);
-                groups.push((size.width.div_ceil(GROUP_SIDE), rows.div_ceil(GROUP_SIDE)));
+                groups.push((
+                    tile.columns.div_ceil(self.method.group.width),
+                    tile.rows.div_ceil(self.method.group.height),
+                ));
             }
             lights.extend_from_slice(&view.lights);
         }
@@ -202,9 +209,21 @@ impl<'a> GpuPrepared<'a> {
         Ok(buffer)
     }
 
+    /// Splits an image into about `across` x `down` parts of whole work-groups, each with its own place in the output.
+    fn parts(&self, size: Size, across: u32, down: u32) -> Vec<Part> {
+        tiles(size, across, down, self.method.group).into_iter().map(|tile| (tile, tile.row * size.width)).collect()
+    }
+
+    /// Parts of a frame for timing: the method's tiles, more of them where a watchdog asks for it.
+    fn timing_parts(&mut self, config: Config, view: &View, size: Size) -> Result<Vec<Part>> {
+        let bands = self.timing_bands(config, view, size)?;
+        let tiles = self.method.tiles;
+        Ok(self.parts(size, tiles, tiles.max(bands.div_ceil(tiles))))
+    }
+
     /// Bands per frame for timing: one, unless the frame would keep the device busy for longer than a watchdog likes.
     fn timing_bands(&mut self, config: Config, view: &View, size: Size) -> Result<u32> {
-        if self.backend.software() {
+        if self.backend.software_threads() > 0 {
             return Ok(1);
         }
         if let Some(&bands) = self.bands.get(&(config, size)) {
@@ -212,7 +231,7 @@ impl<'a> GpuPrepared<'a> {
         }
         let compiled = self.backend.compiled(self.kernel(Entry::Render { config, counting: false }))?;
         let output = self.poisoned("the image", (size.pixels() * size_of::<Pixel>()) as u64)?;
-        let narrow = split(size, size.height.div_ceil(64), true);
+        let narrow = self.parts(size, 1, size.height.div_ceil(64));
         let frames = self.frames(std::slice::from_ref(view), size, &narrow)?;
         let bindings = self.render_bindings(&compiled, &frames, &output);
         let mut slowest = Duration::ZERO;
@@ -230,21 +249,12 @@ impl<'a> GpuPrepared<'a> {
     }
 }
 
-/// Splits an image into about `bands` bands of whole work-groups. With `one_output`, each band has its own place in the
-/// output; otherwise all begin at its start.
-fn split(size: Size, bands: u32, one_output: bool) -> Vec<Band> {
-    let rows = size.height.div_ceil(bands.max(1)).next_multiple_of(GROUP_SIDE);
-    (0..size.height)
-        .step_by(rows as usize)
-        .map(|row| (row, rows.min(size.height - row), if one_output { row * size.width } else { 0 }))
-        .collect()
-}
-
 impl Prepared for GpuPrepared<'_> {
     fn image(&mut self, config: Config, view: &View, size: Size) -> Result<Vec<Pixel>> {
         let compiled = self.backend.compiled(self.kernel(Entry::Render { config, counting: false }))?;
         let output = self.poisoned("the image", (size.pixels() * size_of::<Pixel>()) as u64)?;
-        let bands = split(size, (size.pixels() as u32).div_ceil(BAND_PIXELS), true);
+        let tiles = self.method.tiles;
+        let bands = self.parts(size, tiles, tiles.max((size.pixels() as u32).div_ceil(BAND_PIXELS)));
         let frames = self.frames(std::slice::from_ref(view), size, &bands)?;
         let bindings = self.render_bindings(&compiled, &frames, &output);
         for index in 0..bands.len() {
@@ -262,15 +272,17 @@ impl Prepared for GpuPrepared<'_> {
         band: &mut dyn FnMut(u32, &[CountedPixel]),
     ) -> Result<()> {
         let compiled = self.backend.compiled(self.kernel(Entry::Render { config, counting: true }))?;
-        let bands = split(size, (size.pixels() as u32).div_ceil(BAND_PIXELS), false);
-        let largest = bands.iter().map(|b| b.1 as usize * size.width as usize).max().unwrap_or(0);
+        let mut bands = self.parts(size, 1, (size.pixels() as u32).div_ceil(BAND_PIXELS));
+        // Each begins at the output's start
+        bands.iter_mut().for_each(|(_, first_pixel)| *first_pixel = 0);
+        let largest = bands.iter().map(|(tile, _)| tile.rows as usize * size.width as usize).max().unwrap_or(0);
         let output = self.poisoned("the counters", (largest * size_of::<CountedPixel>()) as u64)?;
         let frames = self.frames(std::slice::from_ref(view), size, &bands)?;
         let bindings = self.render_bindings(&compiled, &frames, &output);
-        for (index, &(first_row, rows, _)) in bands.iter().enumerate() {
+        for (index, &(Tile { row, rows, .. }, _)) in bands.iter().enumerate() {
             self.submit(&compiled, &bindings, &frames, index, None);
             let pixels: Vec<CountedPixel> = self.read(&output, (rows * size.width) as usize)?;
-            band(first_row, &pixels);
+            band(row, &pixels);
         }
         Ok(())
     }
@@ -286,7 +298,7 @@ impl Prepared for GpuPrepared<'_> {
             return Ok(Vec::new());
         };
         let backend = self.backend;
-        let bands = split(size, self.timing_bands(config, first_view, size)?, true);
+        let bands = self.timing_parts(config, first_view, size)?;
         let compiled = backend.compiled(self.kernel(Entry::Render { config, counting: false }))?;
         let output = self.poisoned("the image", (size.pixels() * size_of::<Pixel>()) as u64)?;
         let timestamps = backend.info().timestamp_period_ns;
@@ -374,7 +386,7 @@ impl Prepared for GpuPrepared<'_> {
                 let mut pass = encoder.begin_compute_pass(&Default::default());
                 pass.set_pipeline(&compiled.pipeline);
                 pass.set_bind_group(0, &bindings, &[]);
-                pass.dispatch_workgroups(rays.len().div_ceil(64) as u32, 1, 1);
+                pass.dispatch_workgroups((rays.len() as u32).div_ceil(self.method.group.size()), 1, 1);
             }
             self.backend.queue.submit([encoder.finish()]);
             let found: Vec<[u32; 2]> = self.read(&output, rays.len())?;

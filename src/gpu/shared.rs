@@ -5,7 +5,7 @@ use crate::accel::octants::Octant;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
-/// `Frame` of `kernels/render.wgsl`: one frame, or a band of its rows.
+/// `Frame` of `kernels/render.wgsl`: one frame, or a part of it.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 #[allow(missing_docs)] // the fields are described in the kernel
@@ -22,7 +22,10 @@ pub struct FrameUniform {
     pub light_count: u32,
     pub first_light: u32,
     pub first_pixel: u32,
-    pub pad: [u32; 2],
+    pub first_column: u32,
+    pub columns: u32,
+    pub height: u32,
+    pub pad: [u32; 3],
 }
 
 /// `Structure` of `kernels/lib/scene.wgsl`.

@@ -1,6 +1,6 @@
 //! Records with known content, and a device that can be told to break.
 
-use rtbench::accel::{Structure, Traversal};
+use rtbench::accel::{Method, Structure, Traversal};
 use rtbench::backend::{
     Backend, Config, CountedPixel, DeviceInfo, DeviceType, FrameTime, GivenRay, Interrupted, Pixel, Prepared, Size,
 };
@@ -145,13 +145,13 @@ impl Backend for Faulty {
         &'a self,
         scene: &'a Scene,
         structure: &'a Structure,
-        traversal: Traversal,
+        method: Method,
     ) -> Result<Box<dyn Prepared + 'a>> {
-        let fault = if traversal == self.traversal { self.fault } else { Fault::None };
+        let fault = if method.traversal == self.traversal { self.fault } else { Fault::None };
         if fault == Fault::NoRoom {
             return Err(Error::Device("the structure needs 5 GiB, the device has 1 GiB".into()));
         }
-        let inner = self.inner.prepare(scene, structure, traversal)?;
+        let inner = self.inner.prepare(scene, structure, method)?;
         Ok(Box::new(FaultyPrepared { inner, fault, spent: &self.spent }))
     }
 }

@@ -2,8 +2,9 @@
 //! sides. Needs no GPU.
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use rtbench::accel::Traversal;
+use rtbench::accel::method::{KdSearch, Vote};
 use rtbench::accel::octants::Octant;
+use rtbench::accel::{Selection, Traversal, variants};
 use rtbench::backend::{Config, CountedPixel, Counters, Pixel};
 use rtbench::gpu::kernels::{self, Entry, Kernel, Source};
 use rtbench::gpu::{FrameUniform, StructureUniform, TraceRay};
@@ -31,7 +32,15 @@ fn check(source: &Source) -> Result<naga::Module, String> {
 #[test]
 fn every_variant_is_valid() {
     let kernels = kernels::all();
-    assert_eq!(kernels.len(), 5 * 8 * 2, "five traversals, six render and two trace entries, two kinds of driver");
+    assert_eq!(
+        kernels.len(),
+        kernels::methods().len() * 8 * 2,
+        "six render and two trace entries, two kinds of driver"
+    );
+    for variant in variants() {
+        let method = Selection::parse(variant.name).unwrap().method();
+        assert!(kernels.iter().any(|kernel| kernel.method == method), "{} is not checked", variant.name);
+    }
     for kernel in kernels {
         if let Err(problem) = check(&assemble(&kernel)) {
             panic!("{}: {problem}", kernel.label());
@@ -43,9 +52,9 @@ fn every_variant_is_valid() {
 fn a_broken_kernel_is_located() {
     let kernel = Kernel {
         entry: Entry::Render { config: Config::P, counting: false },
-        traversal: Traversal::Bvh,
+        method: Traversal::Bvh(Vote::Corrected).into(),
         stack_size: 32,
-        software: true,
+        software_threads: 2,
     };
     let mut source = assemble(&kernel);
     let (_, geom) = kernels::FILES.iter().find(|(name, _)| *name == "lib/geom.wgsl").unwrap();
@@ -85,12 +94,12 @@ macro_rules! same_layout {
 
 #[test]
 fn struct_layouts_agree() {
-    let render = |traversal, counting| {
+    let render = |traversal: Traversal, counting| {
         let kernel = Kernel {
             entry: Entry::Render { config: Config::PSR, counting },
-            traversal,
+            method: traversal.into(),
             stack_size: 32,
-            software: false,
+            software_threads: 0,
         };
         check(&assemble(&kernel)).unwrap()
     };
@@ -111,7 +120,10 @@ fn struct_layouts_agree() {
             background,
             light_count,
             first_light,
-            first_pixel
+            first_pixel,
+            first_column,
+            columns,
+            height
         ]
     );
     same_layout!(
@@ -139,8 +151,12 @@ fn struct_layouts_agree() {
         offsets,
         [offset_of!(BvhNode, min), offset_of!(BvhNode, first), offset_of!(BvhNode, max), offset_of!(BvhNode, count)]
     );
-    let kernel =
-        Kernel { entry: Entry::Trace { any_hit: false }, traversal: Traversal::Brute, stack_size: 8, software: false };
+    let kernel = Kernel {
+        entry: Entry::Trace { any_hit: false },
+        method: Traversal::KdTree(KdSearch::THESIS).into(),
+        stack_size: 8,
+        software_threads: 0,
+    };
     let module = &check(&assemble(&kernel)).unwrap();
     same_layout!(module, "GivenRay", TraceRay, [origin, direction]);
 }

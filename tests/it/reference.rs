@@ -87,7 +87,7 @@ fn agree(scene_file: &str, rays_file: &str) {
             let step = if variant.name == "brute" { 16 } else { 1 };
             let rays: Vec<_> = rays.iter().copied().step_by(step).collect();
             let expected: Vec<_> = expected.iter().copied().step_by(step).collect();
-            let mut prepared = backend.prepare(&scene, &built.structure, selection.traversal()).unwrap();
+            let mut prepared = backend.prepare(&scene, &built.structure, selection.method()).unwrap();
             let found = prepared.trace(&rays, false).unwrap();
             let off = differing(&scene, &expected, &found);
             assert!(

@@ -39,7 +39,7 @@ fn rays(count: usize, seed: u32) -> Vec<GivenRay> {
 fn trace(backend: &dyn Backend, scene: &Scene, selection: &str, rays: &[GivenRay], any_hit: bool) -> Vec<Hit> {
     let selection = Selection::parse(selection).unwrap();
     let built = selection.build(scene, 1).unwrap();
-    backend.prepare(scene, &built.structure, selection.traversal()).unwrap().trace(rays, any_hit).unwrap()
+    backend.prepare(scene, &built.structure, selection.method()).unwrap().trace(rays, any_hit).unwrap()
 }
 
 fn assert_same(name: &str, rays: &[GivenRay], expected: &[Hit], found: &[Hit]) {
@@ -56,12 +56,33 @@ fn names() -> Vec<&'static str> {
     variants().iter().map(|v| v.name).collect()
 }
 
+/// Ways to walk a structure other than each one's own.
+const OTHERS: [&str; 13] = [
+    "kdtree:search=restart",
+    "kdtree:search=pushdown",
+    "kdtree:stack=1",
+    "kdtree:stack=3,memory=private",
+    "kdtree:stack=32",
+    "bvh:vote=original",
+    "bvh:packet=8x4",
+    "bvh:packet=4x4,vote=original",
+    "grid-coop:packet=4x4",
+    "grid-packet:packet=4x4",
+    "grid:group=32x1,tiles=3",
+    "bvh-stack:group=16x16,checks=on",
+    "bvh:tiles=2",
+];
+
+fn all_names() -> Vec<&'static str> {
+    names().into_iter().chain(OTHERS).collect()
+}
+
 /// All structures on one backend, nearest and any hit, against brute force on the CPU.
 fn check_all(backend: &dyn Backend, scene: &Scene, rays: &[GivenRay]) {
     let cpu = CpuBackend::new(2).unwrap();
     let nearest = trace(&cpu, scene, "brute", rays, false);
     let hits: Vec<bool> = nearest.iter().map(|hit| hit.triangle != MISS).collect();
-    for name in names() {
+    for name in all_names() {
         assert_same(name, rays, &nearest, &trace(backend, scene, name, rays, false));
         let any: Vec<bool> = trace(backend, scene, name, rays, true).iter().map(|hit| hit.triangle != MISS).collect();
         assert_eq!(any, hits, "{name}: any hit");
@@ -137,7 +158,7 @@ fn counted(
 ) -> (Vec<CountedPixel>, Vec<Pixel>) {
     let selection = Selection::parse(name).unwrap();
     let built = selection.build(scene, 1).unwrap();
-    let mut prepared = backend.prepare(scene, &built.structure, selection.traversal()).unwrap();
+    let mut prepared = backend.prepare(scene, &built.structure, selection.method()).unwrap();
     let mut pixels = Vec::new();
     prepared.counted(config, &view(3), size, &mut |_, band| pixels.extend_from_slice(band)).unwrap();
     let timed = prepared.image(config, &view(3), size).unwrap();
@@ -157,7 +178,7 @@ fn timed_and_counting_twins_make_the_same_picture() {
         assert_eq!(rays(0) as usize, SIZE.pixels());
         assert_eq!(rays(1) > 0, config.shadows());
         assert_eq!(rays(2) > 0, config.bounces() > 0);
-        for name in names() {
+        for name in all_names() {
             let (pixels, timed) = counted(&cpu, &scene, name, config, SIZE);
             for (index, (pixel, expected)) in pixels.iter().zip(&reference).enumerate() {
                 assert_eq!(pixel.pixel, timed[index], "{name} {config:?} pixel {index}: timed and counting differ");
@@ -180,7 +201,9 @@ fn gpu_counts_what_its_twin_counts() {
     let cpu = CpuBackend::new(2).unwrap();
     for scene in [shiny(soup(400, 12, false)), shiny(soup(400, 13, true))] {
         for config in Config::ALL {
-            for name in names() {
+            // A driver takes a second to compile some kernels: what is not a structure's own way is run with all rays
+            let all = config == Config::PSR;
+            for name in if all { all_names() } else { names() } {
                 let (twin, _) = counted(&cpu, &scene, name, config, SIZE);
                 let (kernel, timed) = counted(gpu, &scene, name, config, SIZE);
                 for (index, (kernel, twin)) in kernel.iter().zip(&twin).enumerate() {
@@ -198,12 +221,53 @@ fn gpu_counts_what_its_twin_counts() {
     }
 }
 
+/// Options that change which rays there are: all traversals with the same option agree, and the option does something.
+#[test]
+fn other_rays_are_the_same_for_all() {
+    let scene = shiny(soup(400, 17, false));
+    let cpu = CpuBackend::new(2).unwrap();
+    let (plain, _) = counted(&cpu, &scene, "bvh-stack", Config::PS, SIZE);
+    let backends = [Some(&cpu as &dyn Backend), gpu().map(|gpu| gpu as &dyn Backend)];
+    for option in ["shadows=to-light", "pattern=four", "pattern=four,tiles=2,shadows=to-light"] {
+        let (reference, _) = counted(&cpu, &scene, &format!("brute:{option}"), Config::PS, SIZE);
+        let (changed, _) = counted(&cpu, &scene, &format!("bvh-stack:{option}"), Config::PS, SIZE);
+        assert!(changed != plain, "{option} changes nothing");
+        for backend in backends.into_iter().flatten() {
+            // On the CPU all of them, on a driver that takes its time to compile two
+            let all = ["bvh", "bvh-stack", "grid", "kdtree", "grid-coop", "grid-packet"];
+            for name in if backend.info().backend == "cpu" { &all[..] } else { &all[..2] } {
+                let (twin, _) = counted(&cpu, &scene, &format!("{name}:{option}"), Config::PS, SIZE);
+                let (pixels, _) = counted(backend, &scene, &format!("{name}:{option}"), Config::PS, SIZE);
+                for (index, (pixel, expected)) in pixels.iter().zip(&reference).enumerate() {
+                    let place = format!("{name}:{option} on {} pixel {index}", backend.info().backend);
+                    assert_eq!(pixel.pixel.triangle, expected.pixel.triangle, "{place}");
+                    assert_eq!(pixel.t, expected.t, "{place}");
+                    if backend.info().is_exact() {
+                        assert_eq!(pixel.counters, twin[index].counters, "{place}");
+                    }
+                }
+            }
+        }
+    }
+    // Four rays, each over whole work-groups
+    let (four, _) = counted(&cpu, &scene, "brute:pattern=four", Config::P, Size { width: 64, height: 64 });
+    let mut distances: Vec<u32> = four.iter().map(|p| p.t).collect();
+    assert!((0..8).all(|x| four[x].t == four[0].t && four[x + 16].t == four[0].t));
+    distances.sort();
+    distances.dedup();
+    assert!(distances.len() <= 4, "{} different rays", distances.len());
+    // The small change of direction finds the same points from both ends
+    let (to_light, _) = counted(&cpu, &scene, "bvh-stack:shadows=to-light", Config::PS, SIZE);
+    let same = to_light.iter().zip(&plain).filter(|(a, b)| a.pixel == b.pixel).count();
+    assert!(same * 100 > plain.len() * 98, "only {same} of {} pixels agree", plain.len());
+}
+
 /// `--checked` compiles other code, which must find the same.
 #[test]
 fn checked_kernels_make_the_same_picture() {
     let (Some(gpu), Some(checked)) = (gpu(), crate::support::own_gpu(true)) else { return };
     let scene = shiny(soup(300, 14, false));
-    for name in names() {
+    for name in ["grid", "kdtree", "bvh", "bvh-stack"] {
         let (plain, _) = counted(gpu, &scene, name, Config::PSR, SIZE);
         let (checked, _) = counted(&checked, &scene, name, Config::PSR, SIZE);
         assert_eq!(plain, checked, "{name}");
@@ -217,7 +281,7 @@ fn a_lost_device_is_an_error() {
     let scene = soup(50, 15, false);
     let selection = Selection::parse("bvh-stack").unwrap();
     let built = selection.build(&scene, 1).unwrap();
-    let mut prepared = gpu.prepare(&scene, &built.structure, selection.traversal()).unwrap();
+    let mut prepared = gpu.prepare(&scene, &built.structure, selection.method()).unwrap();
     prepared.image(Config::P, &view(1), SIZE).unwrap();
     gpu.destroy();
     let lost = |error: rtbench::Error| assert!(matches!(error, rtbench::Error::DeviceLost(_)), "{error:?}");
@@ -226,7 +290,7 @@ fn a_lost_device_is_an_error() {
     lost(prepared.counted(Config::P, &view(1), SIZE, &mut |_, _| ()).unwrap_err());
     drop(prepared);
     let again = crate::support::own_gpu(false).expect("the device opens again");
-    again.prepare(&scene, &built.structure, selection.traversal()).unwrap().image(Config::P, &view(1), SIZE).unwrap();
+    again.prepare(&scene, &built.structure, selection.method()).unwrap().image(Config::P, &view(1), SIZE).unwrap();
 }
 
 /// The clock: as many times as frames, device times where there are timestamps, and an interrupt is noticed.
@@ -238,7 +302,7 @@ fn paths_are_timed_frame_by_frame() {
     let cpu = CpuBackend::new(1).unwrap();
     let backends = [Some(&cpu as &dyn Backend), gpu().map(|gpu| gpu as &dyn Backend)];
     for backend in backends.into_iter().flatten() {
-        let mut prepared = backend.prepare(&scene, &built.structure, selection.traversal()).unwrap();
+        let mut prepared = backend.prepare(&scene, &built.structure, selection.method()).unwrap();
         let times = prepared.time_path(Config::P, &vec![view(1); 5], SIZE, &|| false).unwrap();
         assert_eq!(times.len(), 5);
         assert!(times.iter().all(|t| t.wall_ns > 0));

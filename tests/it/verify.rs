@@ -67,11 +67,11 @@ fn judge(exact: bool, timed: &dyn Fn(&mut Vec<Pixel>), counting: &dyn Fn(&mut Ve
     let built = selection.build(&scene, 1).unwrap();
     let tree = Selection::parse("bvh").unwrap().build(&scene, 1).unwrap();
     let cpu = CpuBackend::new(1).unwrap();
-    let inner = cpu.prepare(&scene, &built.structure, selection.traversal()).unwrap();
+    let inner = cpu.prepare(&scene, &built.structure, selection.method()).unwrap();
     let mut spoiled = Spoiled { inner, timed, counting };
     let mut verifier = Verifier::new(&scene, &tree.structure).unwrap();
-    let twin = Some((&built.structure, selection.traversal()));
-    verifier.check(&mut spoiled, twin, Config::PS, &view(&scene), SIZE, exact).unwrap()
+    let twin = Some(&built.structure);
+    verifier.check(&mut spoiled, selection.method(), twin, Config::PS, &view(&scene), SIZE, exact).unwrap()
 }
 
 /// A pixel that hits something.
@@ -189,8 +189,9 @@ fn a_wrong_reference_is_noticed() {
     }
     let cpu = CpuBackend::new(1).unwrap();
     let selection = Selection::parse("bvh-stack").unwrap();
-    let mut prepared = cpu.prepare(&scene, &tree, selection.traversal()).unwrap();
+    let mut prepared = cpu.prepare(&scene, &tree, selection.method()).unwrap();
     let mut verifier = Verifier::new(&scene, &tree).unwrap();
-    let verdict = verifier.check(prepared.as_mut(), None, Config::P, &view(&scene), SIZE, true).unwrap();
+    let verdict =
+        verifier.check(prepared.as_mut(), selection.method(), None, Config::P, &view(&scene), SIZE, true).unwrap();
     assert!(!verdict.ok && verdict.message.contains("brute force"), "{}", verdict.message);
 }

@@ -4,13 +4,15 @@
 use super::bvh_stack::{EMPTY, LEAF, STACK_SIZE, leaf_records, wanted};
 use super::{Best, GROUP, Lanes, Traverse, Triangles, bits};
 use crate::accel::bvh::{Bvh as Tree, BvhNode};
+use crate::accel::method::Vote;
 use crate::cpu::count::Count;
-use crate::math::{Ray, T_MAX, ray_box};
+use crate::math::{Ray, ray_box};
 
 /// See the module.
 pub struct Bvh<'a> {
     triangles: Triangles<'a>,
     pairs: &'a [[BvhNode; 2]],
+    vote: Vote,
 }
 
 /// What the work-group shares.
@@ -45,8 +47,8 @@ impl Packet {
 
 impl<'a> Bvh<'a> {
     /// A traversal of a built BVH.
-    pub fn new(triangles: Triangles<'a>, bvh: &'a Tree) -> Self {
-        Bvh { triangles, pairs: bvh.nodes.as_chunks().0 }
+    pub fn new(triangles: Triangles<'a>, bvh: &'a Tree, vote: Vote) -> Self {
+        Bvh { triangles, pairs: bvh.nodes.as_chunks().0, vote }
     }
 
     fn start_packet(&self) -> Packet {
@@ -66,7 +68,7 @@ impl<'a> Bvh<'a> {
         let (left_min, left_max) = left.corners();
         let (right_min, right_max) = right.corners();
         let (mut wants_left, mut wants_right, mut wants_both) = (false, false, false);
-        let mut votes = 0; // for the right child first; a ray that wants neither has none
+        let mut votes = 0; // for the right child first
         for lane in bits(alive) {
             counters[lane].inner();
             let l = ray_box(&rays[lane], left_min, left_max);
@@ -84,6 +86,7 @@ impl<'a> Bvh<'a> {
                     wants_right = true;
                     votes += 1;
                 }
+                (false, false) if self.vote == Vote::Original => votes += if r.0 < l.0 { 1 } else { -1 },
                 (false, false) => {}
             }
         }
@@ -109,7 +112,6 @@ impl Traverse for Bvh<'_> {
     fn nearest_hits<C: Count>(&self, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<C>) -> Lanes<u32> {
         let mut best = [Best::NONE; GROUP];
         let mut packet = self.start_packet();
-        debug_assert_eq!(best[0].t, T_MAX);
         while packet.next != EMPTY {
             if packet.next & LEAF != 0 {
                 let (first, records) = leaf_records(packet.next);

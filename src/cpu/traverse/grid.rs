@@ -12,19 +12,19 @@ use glam::{IVec3, Vec3A};
 pub struct Grid<'a> {
     /// Records and vertices.
     pub triangles: Triangles<'a>,
-    grid: &'a grid::Grid,
-    min: Vec3A,
-    max: Vec3A,
-    resolution: IVec3,
+    pub(super) grid: &'a grid::Grid,
+    pub(super) min: Vec3A,
+    pub(super) max: Vec3A,
+    pub(super) resolution: IVec3,
     octants: [Octant; 8],
 }
 
-struct Walk {
-    cell: IVec3,
+pub(super) struct Walk {
+    pub cell: IVec3,
     step: IVec3,
     end: IVec3,
     ahead: IVec3,
-    t_next: Vec3A,
+    pub t_next: Vec3A,
 }
 
 impl<'a> Grid<'a> {
@@ -47,7 +47,7 @@ impl<'a> Grid<'a> {
     }
 
     #[inline]
-    fn start_walk(&self, ray: &Ray, limit: f32) -> Option<Walk> {
+    pub(super) fn start_walk(&self, ray: &Ray, limit: f32) -> Option<Walk> {
         let (near, far) = ray_box(ray, self.min, self.max);
         let t_start = near.max(0.0);
         if !(near <= far && far >= 0.0 && t_start <= limit) {
@@ -76,7 +76,7 @@ impl<'a> Grid<'a> {
     }
 
     #[inline]
-    fn cell(&self, cell: IVec3) -> grid::Cell {
+    pub(super) fn cell(&self, cell: IVec3) -> grid::Cell {
         let index = cell.x as usize
             + self.resolution.x as usize * (cell.y as usize + self.resolution.y as usize * cell.z as usize);
         self.grid.cells[index]
@@ -84,7 +84,7 @@ impl<'a> Grid<'a> {
 
     /// Go to the neighbour behind the nearest border; false if that leaves the grid.
     #[inline]
-    fn advance(&self, ray: &Ray, walk: &mut Walk) -> bool {
+    pub(super) fn advance(&self, ray: &Ray, walk: &mut Walk) -> bool {
         let t = walk.t_next;
         let axis = if t.x <= t.y && t.x <= t.z {
             0

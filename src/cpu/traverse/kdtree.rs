@@ -1,20 +1,23 @@
-//! kd-tree with a short stack, pushdown and restart (Foley and Sugerman 2005, Horn et al. 2007). Twin of
+//! kd-tree without a full stack: restart (Foley and Sugerman 2005), pushdown and short stack (Horn et al. 2007). Twin of
 //! `kernels/traverse/kdtree.wgsl`.
 
 use super::{Best, TraverseAlone, Triangles};
 use crate::accel::kdtree::{KdNode, KdTree as Tree};
+use crate::accel::method::KdSearch;
 use crate::cpu::count::Count;
 use crate::math::{MISS, Ray, T_MAX, ray_box};
 
-/// Entries of the short stack (SPEC section 3); a power of two.
-pub const SHORT_STACK: usize = 4;
+/// Entries that the twin of the thesis's kernel has room for.
+pub const SMALL: usize = KdSearch::THESIS.stack as usize;
 
-/// See the module.
-pub struct KdTree<'a> {
+/// See the module. Has room for `MOST` entries of a short stack: clearing a larger one would cost every ray.
+pub struct KdTree<'a, const MOST: usize> {
     /// Records and vertices.
     pub triangles: Triangles<'a>,
     /// The tree.
     pub tree: &'a Tree,
+    /// What happens after a leaf.
+    pub search: KdSearch,
 }
 
 #[derive(Clone, Copy, Default)]
@@ -24,7 +27,7 @@ struct Entry {
     t_max: f32,
 }
 
-struct Descent {
+struct Descent<const MOST: usize> {
     node: u32,
     t_min: f32,
     t_max: f32,
@@ -35,14 +38,16 @@ struct Descent {
     restart_node: u32,
     /// The ray has not branched yet: the restart node follows.
     pushdown: bool,
-    /// Entries ever pushed less those popped; modulo [`SHORT_STACK`] it is a place in the ring.
+    /// Entries of the ring.
+    ring: usize,
+    /// Entries ever pushed less those popped; modulo `ring` it is a place in it.
     top: usize,
     /// Entries that are still in the ring.
     held: usize,
-    stack: [Entry; SHORT_STACK],
+    stack: [Entry; MOST],
 }
 
-impl Descent {
+impl<const MOST: usize> Descent<MOST> {
     /// Go one inner node down.
     #[inline]
     fn descend(&mut self, ray: &Ray, node: KdNode) {
@@ -60,9 +65,11 @@ impl Descent {
         } else if t_split < self.t_min || t_split <= self.t_restart {
             self.node = far;
         } else {
-            self.stack[self.top & (SHORT_STACK - 1)] = Entry { node: far, t_min: t_split, t_max: self.t_max };
-            self.top += 1;
-            self.held = (self.held + 1).min(SHORT_STACK);
+            if self.ring > 0 {
+                self.stack[self.top % self.ring] = Entry { node: far, t_min: t_split, t_max: self.t_max };
+                self.top += 1;
+                self.held = (self.held + 1).min(self.ring);
+            }
             self.node = near;
             self.t_max = t_split;
             self.pushdown = false;
@@ -79,7 +86,7 @@ impl Descent {
             count.pop();
             self.top -= 1;
             self.held -= 1;
-            let entry = self.stack[self.top & (SHORT_STACK - 1)];
+            let entry = self.stack[self.top % self.ring];
             (self.node, self.t_min, self.t_max) = (entry.node, entry.t_min, entry.t_max);
             return true;
         }
@@ -95,9 +102,9 @@ impl Descent {
     }
 }
 
-impl KdTree<'_> {
+impl<const MOST: usize> KdTree<'_, MOST> {
     #[inline]
-    fn start_descent(&self, ray: &Ray, limit: f32) -> Option<Descent> {
+    fn start_descent(&self, ray: &Ray, limit: f32) -> Option<Descent<MOST>> {
         let (near, far) = ray_box(ray, self.tree.bounds.min.into(), self.tree.bounds.max.into());
         let t_min = near.max(0.0);
         let t_end = far.min(limit);
@@ -108,15 +115,16 @@ impl KdTree<'_> {
             t_end,
             t_restart: -1.0,
             restart_node: 0,
-            pushdown: true,
+            pushdown: self.search.pushdown,
+            ring: (self.search.stack as usize).min(MOST),
             top: 0,
             held: 0,
-            stack: Default::default(),
+            stack: [Entry::default(); MOST],
         })
     }
 }
 
-impl TraverseAlone for KdTree<'_> {
+impl<const MOST: usize> TraverseAlone for KdTree<'_, MOST> {
     fn nearest_hit<C: Count>(&self, ray: &Ray, count: &mut C) -> u32 {
         let mut best = Best::NONE;
         let Some(mut d) = self.start_descent(ray, T_MAX) else {

@@ -5,6 +5,8 @@ pub mod brute;
 pub mod bvh;
 pub mod bvh_stack;
 pub mod grid;
+pub mod grid_coop;
+pub mod grid_packet;
 pub mod kdtree;
 
 use super::count::Count;

@@ -2,6 +2,7 @@
 
 use super::{SELECTIONS, scenes};
 use rtbench::Error;
+use rtbench::accel::method::{Group, KdSearch, Vote};
 use rtbench::accel::{Selection, Traversal, variants};
 
 fn selection(text: &str) -> Selection {
@@ -11,17 +12,26 @@ fn selection(text: &str) -> Selection {
 #[test]
 fn names_and_traversals() {
     let names: Vec<&str> = variants().iter().map(|v| v.name).collect();
-    assert_eq!(names, ["grid", "kdtree", "bvh", "bvh-stack", "ploc-stack", "brute"]);
-    assert_eq!(selection("bvh").traversal(), Traversal::Bvh);
-    assert_eq!(selection("bvh-stack").traversal(), Traversal::BvhStack);
-    assert_eq!(selection("ploc-stack").traversal(), Traversal::BvhStack);
+    assert_eq!(names, ["grid", "kdtree", "bvh", "bvh-stack", "ploc-stack", "grid-coop", "grid-packet", "brute"]);
+    let traversal = |text| selection(text).method().traversal;
+    assert_eq!(traversal("bvh"), Traversal::Bvh(Vote::Corrected));
+    assert_eq!(traversal("bvh:vote=original"), Traversal::Bvh(Vote::Original));
+    assert_eq!(traversal("bvh-stack"), Traversal::BvhStack);
+    assert_eq!(traversal("ploc-stack"), Traversal::BvhStack);
+    assert_eq!(traversal("kdtree"), Traversal::KdTree(KdSearch::THESIS));
+    let search = |stack, pushdown| Traversal::KdTree(KdSearch { stack, pushdown, private: false });
+    assert_eq!(traversal("kdtree:search=restart"), search(0, false));
+    assert_eq!(traversal("kdtree:search=pushdown"), search(0, true));
+    assert_eq!(traversal("kdtree:stack=32"), search(32, true));
+    assert_eq!(selection("bvh:packet=8x4").method().group, Group { width: 8, height: 4 });
+    assert_eq!(selection("grid").method(), Traversal::Grid.into());
 }
 
 #[test]
 fn every_default_in_the_table_is_accepted_and_canonical() {
     for variant in variants() {
         assert!(!variant.summary.is_empty());
-        for option in variant.options {
+        for option in variant.options() {
             let given = selection(&format!("{}:{}={}", variant.name, option.key, option.default));
             assert_eq!(given, selection(variant.name), "{}: {}", variant.name, option.key);
         }
@@ -47,6 +57,8 @@ fn variants_are_canonical() {
 #[test]
 fn equal_trees_are_shared() {
     assert_eq!(selection("bvh:bins=8").build_key(), selection("bvh-stack:bins=8").build_key());
+    assert_eq!(selection("kdtree").build_key(), selection("kdtree:search=restart,tiles=3").build_key());
+    assert_eq!(selection("grid:x=9").build_key(), selection("grid-coop:x=9").build_key());
     let mut keys: Vec<String> = SELECTIONS.map(|s| selection(s).build_key()).to_vec();
     keys.sort();
     keys.dedup();
@@ -56,10 +68,13 @@ fn equal_trees_are_shared() {
 #[test]
 fn what_it_does_not_know_it_names_with_what_there_is() {
     let cases = [
-        ("octree", "no structure 'octree'", "grid, kdtree, bvh, bvh-stack, ploc-stack, brute"),
+        ("octree", "no structure 'octree'", "grid, kdtree, bvh, bvh-stack, ploc-stack, grid-coop, grid-packet, brute"),
         ("", "no structure ''", "grid"),
         ("bvh:depth=3", "no option 'depth'", "bins, max_leaf"),
-        ("brute:x=1", "no option 'x'", "it has none"),
+        ("brute:x=1", "no option 'x'", "group, shadows, tiles"),
+        ("kdtree:stack=33", "'33'", "from 1 to 32"),
+        ("bvh:packet=16x16", "'16x16'", "8x8, 8x4"),
+        ("grid:shadows=no", "'no'", "from-light, to-light"),
         ("bvh:bins=0", "'0' is no value for bins", "from 2 to 32"),
         ("bvh:bins", "'' is no value for bins", "from 2 to 32"),
         ("bvh:max_leaf=16", "'16'", "from 1 to 15"),

@@ -1,0 +1,156 @@
+// Grid whose work-group shares out the triangle tests of all its rays. Twin: src/cpu/traverse/grid_coop.rs.
+//
+// Every ray goes on to its next cell that holds triangles. A running sum of the cells' sizes leaves out the rays that have
+// none and numbers all tests of the group; each invocation does every GROUP_SIZE-th of them, whichever ray it is for. A
+// segmented reduction finds each ray's nearest among the results, and so on until no ray has anything left to test.
+
+//!include lib/together.wgsl
+//!include lib/grid.wgsl
+
+var<workgroup> group_ray: array<Ray, GROUP_SIZE>;
+var<workgroup> first_record: array<u32, GROUP_SIZE>; // of the ray's cell
+var<workgroup> running: array<u32, GROUP_SIZE>;      // tests of this and all earlier rays
+var<workgroup> owner: array<u32, GROUP_SIZE>;        // for which ray invocation i has tested
+var<workgroup> result: array<Found, GROUP_SIZE>;     // and what it has found
+
+struct Found {
+    t: f32,
+    triangle: u32,
+    record: u32,
+}
+
+const NOTHING: Found = Found(NO_HIT, MISS, MISS);
+
+fn nearer(a: Found, b: Found) -> Found {
+    if (b.t < a.t || (b.t == a.t && b.triangle < a.triangle)) {
+        return b;
+    }
+    return a;
+}
+
+// `running` of all rays; the same total for all.
+fn number_tests(tests: u32) -> u32 {
+    running[lane] = tests;
+    workgroupBarrier();
+    for (var reach = 1u; reach < GROUP_SIZE; reach = reach << 1u) {
+        var sum = running[lane];
+        if (lane >= reach) {
+            sum += running[lane - reach];
+        }
+        workgroupBarrier();
+        running[lane] = sum;
+        workgroupBarrier();
+    }
+    return workgroupUniformLoad(&running[GROUP_SIZE - 1u]);
+}
+
+// The ray for which test number `test` is: the first whose running sum is beyond it.
+fn owner_of(test: u32) -> u32 {
+    var ray = 0u;
+    for (var reach = GROUP_SIZE / 2u; reach > 0u; reach = reach >> 1u) {
+        if (running[ray + reach - 1u] <= test) {
+            ray += reach;
+        }
+    }
+    return ray;
+}
+
+// Test number `test` of the group.
+fn do_test(test: u32, ray: u32) -> Found {
+    var before = 0u;
+    if (ray > 0u) {
+        before = running[ray - 1u];
+    }
+    let record = first_record[ray] + test - before;
+    let r = records[record];
+    let hit = intersect(group_ray[ray], vertices[r.x].position.xyz, vertices[r.y].position.xyz, vertices[r.z].position.xyz);
+    if (hit.t > T_MAX) {
+        return NOTHING;
+    }
+    return Found(hit.t, r.w, record);
+}
+
+// The nearest result among neighbours with the same owner, at the first of them.
+fn reduce_segments() {
+    for (var reach = 1u; reach < GROUP_SIZE; reach = reach << 1u) {
+        var mine = result[lane];
+        if (lane + reach < GROUP_SIZE) {
+            if (owner[lane + reach] == owner[lane]) {
+                mine = nearer(mine, result[lane + reach]);
+            }
+        }
+        workgroupBarrier();
+        result[lane] = mine;
+        workgroupBarrier();
+    }
+}
+
+// The nearest hit before `limit`; with `anything`, of the first cell that has one. Reached by the whole work-group.
+fn find(ray: Ray, limit: f32, anything: bool, alive: bool) -> Found {
+    var best = NOTHING;
+    var walk = start_walk(ray, limit);
+    var searching = alive && walk.inside;
+    group_ray[lane] = ray;
+    loop {
+        // On to the next cell that holds anything
+        var tests = 0u;
+        while (searching && tests == 0u) {
+            count_inner();
+            let cell = cells[cell_index(walk.cell)];
+            first_record[lane] = cell.x;
+            tests = cell.y;
+            if (tests == 0u) {
+                searching = go_on(ray, limit, anything, best.t, &walk);
+            }
+        }
+        count_tests(tests);
+        let total = number_tests(tests);
+        if (total == 0u) {
+            break;
+        }
+
+        // All tests of the group, GROUP_SIZE at a time
+        for (var first = 0u; first < total; first += GROUP_SIZE) {
+            var found = NOTHING;
+            var whose = GROUP_SIZE; // nobody's
+            if (first + lane < total) {
+                whose = owner_of(first + lane);
+                found = do_test(first + lane, whose);
+            }
+            owner[lane] = whose;
+            result[lane] = found;
+            workgroupBarrier();
+            reduce_segments();
+            // My tests among these begin at
+            let begin = max(running[lane] - tests, first);
+            if (begin < min(running[lane], first + GROUP_SIZE)) {
+                best = nearer(best, result[begin - first]);
+            }
+            workgroupBarrier();
+        }
+        if (searching) {
+            searching = go_on(ray, limit, anything, best.t, &walk);
+        }
+    }
+    return best;
+}
+
+// Leaves a cell; false at the end of the search.
+fn go_on(ray: Ray, limit: f32, anything: bool, best: f32, walk: ptr<function, Walk>) -> bool {
+    let t_exit = min(min((*walk).t_next.x, (*walk).t_next.y), (*walk).t_next.z);
+    if (anything && (best < limit || t_exit > limit)) {
+        return false;
+    }
+    if (!anything && best < t_exit) {
+        return false;
+    }
+    return advance(ray, walk);
+}
+
+fn nearest_hit(ray: Ray, alive: bool) -> u32 {
+    return find(ray, T_MAX, false, alive).record;
+}
+
+fn any_hit(ray: Ray, limit: f32, alive: bool) -> bool {
+    return find(ray, limit, true, alive).t < limit;
+}
