@@ -1,0 +1,10 @@
+//! The thesis of 2009, measured anew: its published numbers, and tables, figures, claims and a report as pure functions
+//! of recorded runs. Nothing here measures, reads a clock or looks at the machine: the same runs give the same bytes.
+
+pub mod convention;
+pub mod data;
+pub mod measured;
+pub mod published;
+pub mod runs;
+pub mod scenes;
+pub mod variant;
