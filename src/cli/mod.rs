@@ -10,9 +10,11 @@ mod devices;
 mod output;
 mod progress;
 mod render;
+mod runs;
 mod scenes;
 mod structures;
 mod sweep;
+mod tables;
 mod trace;
 
 use crate::bench::environment;
@@ -41,6 +43,7 @@ Exit codes: 0 all is well, 1 a kernel's answer was wrong, 2 something could not 
 #[derive(Subcommand)]
 enum Command {
     Sweep(sweep::Arguments),
+    Tables(tables::Arguments),
     Render(render::Arguments),
     Build(build::Arguments),
     Trace(trace::Arguments),
@@ -70,6 +73,7 @@ fn run(command: Command) -> Result<ExitCode> {
     let done = |()| ExitCode::SUCCESS;
     match command {
         Command::Sweep(arguments) => sweep::run(&arguments),
+        Command::Tables(arguments) => tables::run(&arguments).map(done),
         Command::Render(arguments) => render::run(&arguments).map(done),
         Command::Build(arguments) => build::run(&arguments),
         Command::Trace(arguments) => trace::run(&arguments).map(done),

@@ -21,7 +21,9 @@ pub fn data(runs: &[RecordedRun]) -> Data {
             data.devices.push(device(&provenance.device, &provenance.environment));
             identities.len() - 1
         });
-        data.devices[device].checked |= provenance.device.checked;
+        // The twins have Rust's own checks, always: that says nothing about wgpu's
+        data.devices[device].checked |=
+            provenance.device.checked && provenance.device.device_type != DeviceType::CpuTwin;
         for record in &run.journal.structures {
             add_scene(&mut data, &record.scene);
             add_built(&mut data, record, &provenance.environment.cpu);

@@ -69,9 +69,9 @@ impl ThesisScene {
         }
     }
 
-    /// The scene of this name.
+    /// The scene of this name; options behind it (`museum6:time=3`) do not matter.
     pub fn named(name: &str) -> Option<ThesisScene> {
-        let name = name.to_lowercase();
+        let name = name.split(':').next().unwrap_or(name).to_lowercase();
         ThesisScene::ALL.into_iter().find(|s| s.name() == name || s.aliases().contains(&name.as_str()))
     }
 
@@ -138,7 +138,11 @@ impl fmt::Display for SceneKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             SceneKey::Thesis(scene) => f.write_str(scene.name()),
-            SceneKey::Other(name, triangles) => write!(f, "{name} ({triangles})"),
+            SceneKey::Other(name, triangles) => {
+                // A built-in scene's size stands in the brackets anyway
+                let short = name.split_once(":triangles=").filter(|(_, rest)| !rest.contains(','));
+                write!(f, "{} ({triangles})", short.map_or(name.as_str(), |(short, _)| short))
+            }
         }
     }
 }

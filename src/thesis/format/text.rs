@@ -1,0 +1,64 @@
+//! Tables for a terminal.
+
+use crate::results::table::STYLE;
+use crate::thesis::table::Table;
+use comfy_table::CellAlignment;
+
+/// Columns of a terminal that notes are broken at; tables are made to fit it too.
+const WIDTH: usize = 100;
+
+/// A table with its title above and its notes below.
+pub fn write(table: &Table) -> String {
+    let mut text = wrap(&table.caption(), "");
+    let mut drawn = comfy_table::Table::new();
+    let mut headings = table.keys.clone();
+    if table.beside {
+        headings.push(String::new());
+    }
+    // Three lines of heading, as far as they are used: group, name, unit
+    let groups = table.columns.iter().any(|c| !c.group.is_empty());
+    let units = table.columns.iter().any(|c| !c.unit.is_empty());
+    headings.extend(table.columns.iter().map(|column| {
+        let mut lines = Vec::new();
+        if groups {
+            lines.push(column.group.as_str());
+        }
+        lines.push(&column.name);
+        if units {
+            lines.push(&column.unit);
+        }
+        lines.join("\n")
+    }));
+    drawn.load_style(STYLE).set_header(headings);
+    for row in table.body("-") {
+        drawn.add_row(row);
+    }
+    for (index, column) in drawn.column_iter_mut().enumerate() {
+        column.set_padding((0, 1));
+        if index >= table.key_columns() {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    text += &drawn.trim_fmt();
+    text.push('\n');
+    for note in &table.notes {
+        text += &wrap(note, "  ");
+    }
+    text
+}
+
+/// Breaks a text at spaces; lines begin with `indent`. A word that is longer than a line stands on its own.
+pub fn wrap(text: &str, indent: &str) -> String {
+    let (mut out, mut line) = (String::new(), String::new());
+    for word in text.split_whitespace() {
+        if !line.is_empty() && indent.len() + line.chars().count() + 1 + word.chars().count() > WIDTH {
+            out += &format!("{indent}{line}\n");
+            line.clear();
+        }
+        if !line.is_empty() {
+            line.push(' ');
+        }
+        line += word;
+    }
+    out + indent + &line + "\n"
+}
