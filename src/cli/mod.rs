@@ -4,6 +4,7 @@
 //! wrong, 2 something could not run, 130 Ctrl-C.
 
 mod build;
+mod claims;
 mod completions;
 mod device;
 mod devices;
@@ -44,6 +45,7 @@ Exit codes: 0 all is well, 1 a kernel's answer was wrong, 2 something could not 
 enum Command {
     Sweep(sweep::Arguments),
     Tables(tables::Arguments),
+    Claims(claims::Arguments),
     Render(render::Arguments),
     Build(build::Arguments),
     Trace(trace::Arguments),
@@ -74,6 +76,7 @@ fn run(command: Command) -> Result<ExitCode> {
     match command {
         Command::Sweep(arguments) => sweep::run(&arguments),
         Command::Tables(arguments) => tables::run(&arguments).map(done),
+        Command::Claims(arguments) => claims::run(&arguments).map(done),
         Command::Render(arguments) => render::run(&arguments).map(done),
         Command::Build(arguments) => build::run(&arguments),
         Command::Trace(arguments) => trace::run(&arguments).map(done),
