@@ -1,9 +1,10 @@
 //! `rtbench claims`: what the thesis says, judged by measurements.
 
-use super::runs::{RunArguments, Sources, deliver};
+use super::runs::{Into, RunArguments, Sources, deliver};
 use super::tables;
 use crate::error::Result;
 use crate::thesis::claims::{self, Form};
+use crate::thesis::splice::Need;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -25,6 +26,8 @@ pub struct Arguments {
     /// Write to a file instead of standard output
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    into: Into,
 }
 
 /// Runs the command.
@@ -35,11 +38,15 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let sources = arguments.runs.read()?;
     let card = tables::card(&sources.published, &arguments.card)?;
     let findings = claims::judge(&sources.data, &sources.published, card);
+    let block = || vec![("claims".to_owned(), claims::summary(&findings, &whose(&sources)))];
+    if arguments.into.splice(block, Need::All)? {
+        return Ok(());
+    }
     deliver(&claims::write(&findings, &whose(&sources), arguments.format), arguments.output.as_deref())
 }
 
 /// Whose numbers are judged.
-pub fn whose(sources: &Sources) -> String {
+fn whose(sources: &Sources) -> String {
     match sources.runs.len() {
         0 => "the numbers that it printed".into(),
         1 => "1 run".into(),

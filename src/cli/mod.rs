@@ -8,9 +8,11 @@ mod claims;
 mod completions;
 mod device;
 mod devices;
+mod figures;
 mod output;
 mod progress;
 mod render;
+mod report;
 mod runs;
 mod scenes;
 mod structures;
@@ -46,6 +48,8 @@ enum Command {
     Sweep(sweep::Arguments),
     Tables(tables::Arguments),
     Claims(claims::Arguments),
+    Figures(figures::Arguments),
+    Report(report::Arguments),
     Render(render::Arguments),
     Build(build::Arguments),
     Trace(trace::Arguments),
@@ -77,6 +81,8 @@ fn run(command: Command) -> Result<ExitCode> {
         Command::Sweep(arguments) => sweep::run(&arguments),
         Command::Tables(arguments) => tables::run(&arguments).map(done),
         Command::Claims(arguments) => claims::run(&arguments).map(done),
+        Command::Figures(arguments) => figures::run(&arguments).map(done),
+        Command::Report(arguments) => report::run(&arguments).map(done),
         Command::Render(arguments) => render::run(&arguments).map(done),
         Command::Build(arguments) => build::run(&arguments),
         Command::Trace(arguments) => trace::run(&arguments).map(done),

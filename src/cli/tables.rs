@@ -1,11 +1,13 @@
 //! `rtbench tables`: the thesis's tables, published or measured.
 
 use super::output;
-use super::runs::{RunArguments, deliver};
+use super::runs::{Into, RunArguments, deliver};
 use crate::error::{Error, Result};
 use crate::thesis::convention::Convention;
 use crate::thesis::data::Data;
 use crate::thesis::format::{self, Format};
+use crate::thesis::splice::{Block, Need};
+use crate::thesis::table::Table;
 use crate::thesis::tables::{self, Options, Rows};
 use clap::Args;
 use std::path::PathBuf;
@@ -43,6 +45,8 @@ pub struct Arguments {
     /// Write to a file instead of standard output
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    into: Into,
 }
 
 const EXAMPLES: &str = "\
@@ -54,7 +58,9 @@ Examples:
   rtbench tables results/A results/B --table 5.2,5.3.4,B.1 --format markdown
       two devices, and how much faster one is
   rtbench tables results/RUN --format csv -o tables.csv
-      one line per number, for other programs";
+      one line per number, for other programs
+  rtbench tables results/RUN --table 5.12 --rows measured --into README.md
+      a document's own table, between <!-- rtbench:5.12 --> and <!-- /rtbench:5.12 -->";
 
 /// Runs the command.
 ///
@@ -71,11 +77,25 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         rows: arguments.rows,
     };
     let tables = tables::build(&sources.data, &sources.published, &options, &ids);
+    let (all, need) =
+        if ids.len() == tables::IDS.len() { (&tables::IDS[..], Need::Any) } else { (&ids[..], Need::All) };
+    if arguments.into.splice(|| blocks(&tables, all), need)? {
+        return Ok(());
+    }
     let empty: Vec<&str> = ids.into_iter().filter(|id| tables.iter().all(|table| table.id != *id)).collect();
     if !empty.is_empty() {
         output::note(&format!("nothing was measured for: {}", empty.join(", ")));
     }
     deliver(&format::write(&tables, arguments.format), arguments.output.as_deref())
+}
+
+/// A block per number, with all its tables.
+fn blocks(tables: &[Table], ids: &[&str]) -> Vec<Block> {
+    let of = |id: &&str| {
+        let own: Vec<Table> = tables.iter().filter(|table| table.id == **id).cloned().collect();
+        ((*id).to_owned(), format::write(&own, Format::Markdown))
+    };
+    ids.iter().map(of).collect()
 }
 
 /// A published card by its name.

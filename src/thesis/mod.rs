@@ -4,11 +4,14 @@
 pub mod claims;
 pub mod convention;
 pub mod data;
+pub mod figures;
 pub mod format;
 pub mod measured;
 pub mod published;
+pub mod report;
 pub mod runs;
 pub mod scenes;
+pub mod splice;
 pub mod sweeps;
 pub mod table;
 pub mod tables;

@@ -13,7 +13,7 @@ mod render;
 pub use cases::{MIRRORS, UNIFORM_REFERENCES};
 pub use compare::{Outcome, UNKNOWN_NOISE_PCT};
 pub use options::{FAR, NEAR, WORTH_PCT};
-pub use render::{Form, details, sign, totals, write};
+pub use render::{Form, details, sign, summary, totals, write};
 
 use super::data::Data;
 use super::scenes::SceneKey;

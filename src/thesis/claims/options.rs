@@ -164,7 +164,9 @@ fn far(rule: Uncertain, best: Uncertain) -> Outcome {
 fn is_stadium(key: &SceneKey) -> bool {
     match key {
         SceneKey::Thesis(scene) => *scene == ThesisScene::Robots,
-        SceneKey::Other(name, _) => name.split(':').next() == Some("stadium") || key.tessellation_of() == Some(ThesisScene::Robots),
+        SceneKey::Other(name, _) => {
+            name.split(':').next() == Some("stadium") || key.tessellation_of() == Some(ThesisScene::Robots)
+        }
     }
 }
 

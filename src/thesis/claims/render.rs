@@ -90,7 +90,8 @@ pub fn details(finding: &Finding) -> Vec<String> {
     lines
 }
 
-fn markdown(findings: &[Finding], whose: &str) -> String {
+/// One line per finding, as Markdown.
+pub fn summary(findings: &[Finding], whose: &str) -> String {
     let mut text = format!("Claims of the thesis, judged by {whose} ({}).\n\n", totals(findings));
     text += "| claim | verdict | by | scenes | cases | thesis's own | statement |\n|:--|:--|:--|--:|--:|--:|:--|\n";
     for finding in findings {
@@ -113,6 +114,11 @@ fn markdown(findings: &[Finding], whose: &str) -> String {
             })),
         );
     }
+    text
+}
+
+fn markdown(findings: &[Finding], whose: &str) -> String {
+    let mut text = summary(findings, whose);
     for finding in findings {
         text += &format!("\n**{}: {}** ({})\n\n", finding.claim, escape(finding.statement), finding.verdict.in_words());
         let cases = finding.cases.iter().map(|c| format!("`{}` {}: {}", sign(c.outcome), c.name(), c.numbers));

@@ -21,7 +21,14 @@ pub fn scenes(context: &Context) -> Table {
         (key.clone(), Row { keys: vec![key.to_string()], cells })
     });
     let rows: Vec<_> = rows.collect();
-    context.table("5.1", "Scenes".into(), &["scene"], columns.into(), rows)
+    let mut table = context.table("5.1", "Scenes".into(), &["scene"], columns.into(), rows);
+    if !context.data.published {
+        table.notes.push(
+            "Lights are those of the scene's file; where it has none, the camera path or the catalogue brings one."
+                .into(),
+        );
+    }
+    table
 }
 
 /// Table 5.3.
