@@ -33,6 +33,9 @@ pub fn totals(findings: &[Finding]) -> String {
     words.collect::<Vec<_>>().join(", ")
 }
 
+/// Columns left of a claim's statement.
+const STATEMENT: &str = "                       ";
+
 fn text(findings: &[Finding], whose: &str) -> String {
     let mut text = wrap(&format!("Claims of the thesis, judged by {whose} ({}).", totals(findings)), "");
     for finding in findings {
@@ -40,7 +43,9 @@ fn text(findings: &[Finding], whose: &str) -> String {
             Verdict::NotMeasured => "[ NOT MEASURED ]".to_owned(),
             verdict => verdict.in_words().to_uppercase(),
         };
-        text += &format!("\n{:<4} {verdict:<17} {}\n", finding.claim, finding.statement);
+        // The statement stands right of the verdict, on as many lines as it takes
+        let statement = wrap(finding.statement, STATEMENT);
+        text += &format!("\n{:<4} {verdict:<17} {}", finding.claim, statement.trim_start());
         for line in details(finding) {
             text += &wrap(&line, "       ");
         }

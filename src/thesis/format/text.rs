@@ -2,10 +2,12 @@
 
 use crate::results::table::STYLE;
 use crate::thesis::table::Table;
-use comfy_table::CellAlignment;
+use comfy_table::{CellAlignment, ColumnConstraint, Width};
 
 /// Columns of a terminal that notes are broken at; tables are made to fit it too.
 const WIDTH: usize = 100;
+/// Every scene of the thesis has room for its name.
+const NAME: usize = 10;
 
 /// A table with its title above and its notes below.
 pub fn write(table: &Table) -> String {
@@ -15,13 +17,15 @@ pub fn write(table: &Table) -> String {
     if table.beside {
         headings.push(String::new());
     }
-    // Three lines of heading, as far as they are used: group, name, unit
+    // Three lines of heading, as far as they are used: group (above the first of its columns), name, unit
     let groups = table.columns.iter().any(|c| !c.group.is_empty());
     let units = table.columns.iter().any(|c| !c.unit.is_empty());
+    let mut group = "";
     headings.extend(table.columns.iter().map(|column| {
         let mut lines = Vec::new();
         if groups {
-            lines.push(column.group.as_str());
+            lines.push(if column.group == group { "" } else { column.group.as_str() });
+            group = &column.group;
         }
         lines.push(&column.name);
         if units {
@@ -33,11 +37,20 @@ pub fn write(table: &Table) -> String {
     for row in table.body("-") {
         drawn.add_row(row);
     }
+    let last = table.key_columns() + table.columns.len() - 1;
     for (index, column) in drawn.column_iter_mut().enumerate() {
-        column.set_padding((0, 1));
+        column.set_padding((0, u16::from(index < last)));
         if index >= table.key_columns() {
             column.set_cell_alignment(CellAlignment::Right);
         }
+    }
+    let width = |drawn: &comfy_table::Table| drawn.to_string().lines().map(|l| l.chars().count()).max().unwrap_or(0);
+    let too_much = width(&drawn).saturating_sub(WIDTH);
+    let names = table.rows.iter().map(|row| row.keys[0].chars().count()).max().unwrap_or(0);
+    if let Some(column) = drawn.column_mut(0).filter(|_| too_much > 0) {
+        // Long names are broken at their spaces before anything else gets less room
+        let most = names.saturating_sub(too_much).max(NAME) as u16;
+        column.set_constraint(ColumnConstraint::UpperBoundary(Width::Fixed(most + 1)));
     }
     text += &drawn.trim_fmt();
     text.push('\n');
