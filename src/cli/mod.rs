@@ -40,6 +40,7 @@ Begin with:
   rtbench sweep --scene bunny.ply        the same for a scene of your own
   rtbench render --scene hall -o hall.png
   rtbench devices                        what there is to measure
+  rtbench report results/RUN -o run.html what was measured, beside the thesis of 2009
 
 Exit codes: 0 all is well, 1 a kernel's answer was wrong, 2 something could not run, 130 Ctrl-C.";
 

@@ -69,6 +69,9 @@ Examples:
 pub fn run(arguments: &Arguments) -> Result<()> {
     let ids = tables::select(&arguments.table)?;
     let sources = arguments.runs.read()?;
+    if arguments.beside.is_some() && sources.runs.is_empty() {
+        output::note("nothing stands beside the published numbers: give a run");
+    }
     let options = Options {
         beside: arguments.beside.is_some(),
         convention: arguments.convention,

@@ -76,11 +76,11 @@ fn device(device: &DeviceInfo, environment: &Environment) -> Device {
 
 /// Devices of the same name get a number.
 fn tell_apart(devices: &mut [Device]) {
-    for index in 1..devices.len() {
-        let label = devices[index].label.clone();
-        let before = devices[..index].iter().filter(|d| d.facts != devices[index].facts && d.label.starts_with(&label));
-        if let number @ 1.. = before.count() {
-            devices[index].label = format!("{label} #{}", number + 1);
+    let names: Vec<String> = devices.iter().map(|d| d.label.clone()).collect();
+    for (index, device) in devices.iter_mut().enumerate() {
+        let before = names[..index].iter().filter(|name| **name == device.label).count();
+        if before > 0 {
+            device.label = format!("{} #{}", device.label, before + 1);
         }
     }
 }

@@ -8,9 +8,16 @@ use crate::thesis::scenes::SceneKey;
 use crate::thesis::table::Form;
 use crate::thesis::variant::Variant;
 
-/// References per triangle in a grid of the rule's size below which a scene is uniform: the thesis's three single objects
-/// have less than four, its walk-through scenes more than six.
-pub const UNIFORM_REFERENCES: f64 = 5.0;
+/// Crowding of the fullest cell from which on a scene is not uniform: the thesis's three single objects have 1.5 to 2.7,
+/// its walk-through scenes 15 to 180 (table 5.4).
+pub const UNIFORM_CROWDING: f64 = 8.0;
+
+/// How crowded a grid's fullest cell is. A surface of `n` even triangles passes through about the square of the number
+/// of cells on a side, which by the rule is `16 sqrt(n)`: each of them holds `sqrt(n) / 16` triangles. Crowding is how many
+/// times as many the fullest holds.
+pub fn crowding(fullest: u32, triangles: u64) -> f64 {
+    f64::from(fullest) / ((triangles.max(1) as f64).sqrt() / 16.0)
+}
 
 /// "More than a few percent" of the surface that mirrors.
 pub const MIRRORS: f64 = 0.03;
@@ -25,8 +32,8 @@ pub fn is_uniform(data: &Data, scene: &SceneKey) -> Option<bool> {
         return Some(scene.is_object());
     }
     let by_rule = |b: &&Built| b.scene == *scene && b.structure == "grid" && b.variant.is_default();
-    let references = data.built.iter().find(by_rule)?.properties.references_per_triangle?;
-    Some(references < UNIFORM_REFERENCES)
+    let fullest = data.built.iter().find(by_rule)?.properties.max_cell_triangles?;
+    Some(crowding(fullest, data.scene(scene)?.triangles) < UNIFORM_CROWDING)
 }
 
 /// True if more than a few percent of a scene mirror.

@@ -11,7 +11,7 @@ mod list;
 mod options;
 mod render;
 
-pub use cases::{MIRRORS, UNIFORM_REFERENCES};
+pub use cases::{MIRRORS, UNIFORM_CROWDING, crowding};
 pub use compare::{Outcome, UNKNOWN_NOISE_PCT};
 pub use options::{FAR, NEAR, WORTH_PCT};
 pub use render::{Form, details, sign, summary, totals, write};

@@ -45,7 +45,7 @@ fn device_table(data: &Data, title: &str) -> Table {
 /// far they range per structure. None with a single device.
 pub fn speedups(context: &Context) -> Vec<Table> {
     let mut tables = pairs(context.data);
-    if context.options.beside {
+    if context.options.beside && !tables.is_empty() {
         tables.extend(pairs(context.published));
     }
     tables

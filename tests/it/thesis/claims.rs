@@ -2,7 +2,7 @@
 
 use super::synthetic::{Builder, everything, sums};
 use rtbench::backend::{Config, DeviceType};
-use rtbench::thesis::claims::{Basis, Finding, Form, Verdict, judge, write};
+use rtbench::thesis::claims::{Basis, Finding, Form, UNIFORM_CROWDING, Verdict, crowding, judge, write};
 use rtbench::thesis::{measured, published};
 
 fn findings(builder: Builder) -> Vec<Finding> {
@@ -235,7 +235,7 @@ fn claims_are_about_the_scenes_that_they_name() {
     let f = findings(with(|b| {
         b.trio("bunny", Config::P, 256, [1.0, 2.0, 3.0]);
         b.trio("hall", Config::PSR, 256, [1.0, 2.0, 3.0]);
-        b.built("hall", "grid", 1.0, 1.0, 4).properties.references_per_triangle = Some(2.0);
+        b.built("hall", "grid", 1.0, 1.0, 4).properties.max_cell_triangles = Some(10);
     }));
     for claim in ["3", "4", "5"] {
         assert_eq!(f.iter().find(|f| f.claim == claim).unwrap().verdict, Verdict::NotMeasured, "{claim}");
@@ -254,6 +254,19 @@ fn claims_are_about_the_scenes_that_they_name() {
         b.frame("bunny", "grid:factor=8", Config::P, 256, 2.0);
     });
     assert_eq!(verdict(half, "10a"), Verdict::NotMeasured);
+}
+
+#[test]
+fn crowding_tells_the_thesis_s_objects_from_its_rooms() {
+    let data = published::data();
+    for scene in &data.scenes {
+        let fullest = data.thesis_built(&scene.key, "grid").unwrap().properties.max_cell_triangles.unwrap();
+        let crowding = crowding(fullest, scene.triangles);
+        eprintln!("{}: {crowding:.1}", scene.key);
+        let uniform = scene.key.thesis().unwrap().is_object();
+        let (low, high) = if uniform { (1.0, UNIFORM_CROWDING / 2.0) } else { (1.5 * UNIFORM_CROWDING, 1000.0) };
+        assert!((low..high).contains(&crowding), "{}: {crowding}", scene.key);
+    }
 }
 
 #[test]

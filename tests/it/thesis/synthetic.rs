@@ -107,7 +107,8 @@ impl Builder {
             "grid" => (p.cells_x, p.cells_y, p.cells_z) = (Some(cells), Some(2 * cells), Some(3 * cells)),
             _ => (p.leaves, p.nodes) = (Some(7), Some(13)),
         }
-        p.references_per_triangle = Some(if name == "scan" { 2.0 } else { 9.0 });
+        p.references_per_triangle = Some(9.0);
+        p.max_cell_triangles = (structure == "grid").then_some(1000);
         self.run.journal.structures.push(record);
         self.run.journal.structures.last_mut().unwrap()
     }
