@@ -124,11 +124,14 @@ impl SceneKey {
         }
     }
 
-    /// The scene of the thesis of which this is another tessellation.
+    /// The scene of the thesis of which this is another tessellation, by its name or the first word of it
+    /// (`conference-obj`).
     pub fn tessellation_of(&self) -> Option<ThesisScene> {
         match self {
             SceneKey::Thesis(_) => None,
-            SceneKey::Other(name, _) => ThesisScene::named(name),
+            SceneKey::Other(name, _) => {
+                ThesisScene::named(name).or_else(|| ThesisScene::named(name.split_once('-')?.0))
+            }
         }
     }
 }

@@ -48,7 +48,7 @@ pub const CLAIMS: [Claim; 15] = [
         basis: Basis::FrameTimes,
         cases: cases::bvh_fastest,
         by_counts: None,
-        remark: "Ordinary is what is not uniform: a rule-sized grid's fullest cell holds eight times sqrt(n) / 16 triangles or more, which is what an even surface would give it.",
+        remark: "Ordinary is what is not uniform: a rule-sized grid's fullest cell has eight times sqrt(n) / 16 triangles or more, which is what an even surface would give it.",
     },
     Claim {
         id: "4",

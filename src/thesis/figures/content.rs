@@ -48,9 +48,6 @@ pub const KINDS: [Kind; 5] = [
     Kind { id: "bars", file: "frame-times", needs: "frame times", pictures: bars },
 ];
 
-/// Most panels of a figure: more would be too small to read or too long to print.
-const MAX_PANELS: usize = 12;
-
 fn words(config: Config) -> &'static str {
     match config {
         Config::P => "primary rays",
@@ -76,7 +73,6 @@ const TIME: &str = "mean frame time [ms]";
 
 /// Panels under one title; their axes of time are all linear, or all logarithmic if one panel asks for it.
 fn picture(title: String, mut panels: Vec<Panel>) -> Picture {
-    panels.truncate(MAX_PANELS);
     fn times(panel: &Panel) -> impl Iterator<Item = f64> {
         panel.series.iter().flat_map(|s| s.points.iter().map(|p| p.1))
     }
@@ -106,8 +102,9 @@ fn grid_resolution(data: &Data, device: usize) -> Vec<Drawn> {
             let side = points[0].frame.width;
             series.push(Series {
                 label: format!("{} at {side}x{side}", scene.key),
-                style: series.len(),
-                faint: false,
+                style: series.len() % theme::STYLES,
+                // Beyond the last colour they begin again, hollow
+                faint: series.len() >= theme::STYLES,
                 ringed: points.iter().find(|p| p.is_rule).map(value),
                 points: points.iter().map(value).collect(),
             });

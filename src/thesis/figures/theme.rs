@@ -16,7 +16,7 @@ pub const AXIS: RGBColor = RGBColor(90, 90, 94);
 pub const MESH: RGBColor = RGBColor(224, 224, 228);
 
 /// Series, on a light ground.
-const SERIES: [RGBColor; 7] = [
+const SERIES: [RGBColor; 8] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -24,10 +24,11 @@ const SERIES: [RGBColor; 7] = [
     RGBColor(166, 118, 29),
     RGBColor(86, 150, 200),
     RGBColor(100, 100, 104),
+    RGBColor(110, 120, 0),
 ];
 
 /// The same roles on a dark ground: letters and lines lighter, so that contrast stays.
-const DARK: [(RGBColor, RGBColor); 11] = [
+const DARK: [(RGBColor, RGBColor); 12] = [
     (GROUND, RGBColor(20, 23, 28)),
     (TEXT, RGBColor(232, 232, 236)),
     (AXIS, RGBColor(160, 160, 166)),
@@ -39,6 +40,7 @@ const DARK: [(RGBColor, RGBColor); 11] = [
     (SERIES[4], RGBColor(226, 178, 84)),
     (SERIES[5], RGBColor(158, 208, 255)),
     (SERIES[6], RGBColor(178, 178, 184)),
+    (SERIES[7], RGBColor(204, 214, 96)),
 ];
 
 /// Colour of a series.
@@ -46,9 +48,13 @@ pub fn series(index: usize) -> RGBColor {
     SERIES[index % SERIES.len()]
 }
 
+/// Number of colours and shapes.
+pub const STYLES: usize = SERIES.len();
+
 /// The index of a structure's colour: the same in every figure.
 pub fn structure(name: &str) -> usize {
-    ["grid", "kdtree", "bvh", "bvh-stack", "ploc-stack", "grid-coop"].iter().position(|n| *n == name).unwrap_or(6)
+    let names = ["grid", "kdtree", "bvh", "bvh-stack", "ploc-stack", "grid-coop", "brute", "grid-packet"];
+    names.iter().position(|n| *n == name).unwrap_or(names.len() - 1)
 }
 
 /// Outline of a marker around its point, in pixels; one shape per series.
@@ -73,7 +79,8 @@ pub fn marker(index: usize) -> Vec<(i32, i32)> {
             (-2, 2),
             (-6, 2),
         ],
-        _ => vec![(-7, -2), (7, -2), (7, 2), (-7, 2)],
+        6 => vec![(-7, -2), (7, -2), (7, 2), (-7, 2)],
+        _ => vec![(-2, -7), (2, -7), (2, 7), (-2, 7)],
     }
 }
 

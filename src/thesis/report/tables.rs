@@ -17,19 +17,9 @@ pub fn absent(ids: &[&str]) -> String {
 }
 
 fn one(table: &Table) -> String {
+    let (title, head) = (escape(&table.caption()), head(table));
     let mut html =
-        format!("<h3>{}</h3>\n<div class=\"scroll\" tabindex=\"0\"><table>\n<thead><tr>", escape(&table.caption()));
-    for key in &table.keys {
-        html += &format!("<th class=\"key\">{}</th>", escape(key));
-    }
-    if table.beside {
-        html += "<th class=\"key\"></th>";
-    }
-    for (index, column) in table.columns.iter().enumerate() {
-        let words = table.rows.iter().any(|row| matches!(row.cells.get(index), Some(Cell::Text(_))));
-        html += &heading(column, if words { " class=\"key\"" } else { "" });
-    }
-    html += "</tr></thead>\n<tbody>\n";
+        format!("<h3>{title}</h3>\n<div class=\"scroll\" tabindex=\"0\"><table>\n<thead>{head}</thead>\n<tbody>\n");
     let mut lines = table.rows.iter().flat_map(|row| row.lines(table.beside).into_iter().map(move |line| (row, line)));
     for cells in table.body("–") {
         let Some((row, line)) = lines.next() else { break };
@@ -58,8 +48,27 @@ fn one(table: &Table) -> String {
     html
 }
 
+/// One row of headings, or two where columns come in groups.
+fn head(table: &Table) -> String {
+    let grouped = table.columns.iter().any(|column| !column.group.is_empty());
+    let span = if grouped { " rowspan=\"2\"" } else { "" };
+    let keys = table.keys.iter().map(String::as_str).chain(table.beside.then_some(""));
+    let keys: String = keys.map(|key| format!("<th class=\"key\"{span}>{}</th>", escape(key))).collect();
+    let is_words = |index: usize| table.rows.iter().any(|row| matches!(row.cells.get(index), Some(Cell::Text(_))));
+    let class = |index| if is_words(index) { " class=\"key\"" } else { "" };
+    let names: String = table.columns.iter().enumerate().map(|(i, column)| heading(column, class(i))).collect();
+    if !grouped {
+        return format!("<tr>{keys}{names}</tr>");
+    }
+    let groups: String = table
+        .columns
+        .chunk_by(|a, b| a.group == b.group)
+        .map(|group| format!("<th class=\"group\" colspan=\"{}\">{}</th>", group.len(), escape(&group[0].group)))
+        .collect();
+    format!("<tr>{keys}{groups}</tr><tr>{names}</tr>")
+}
+
 fn heading(column: &Column, class: &str) -> String {
-    let words = [column.group.as_str(), column.name.as_str()].join(" ");
     let unit = if column.unit.is_empty() { String::new() } else { format!("<small>{}</small>", escape(&column.unit)) };
-    format!("<th{class}>{}{unit}</th>", escape(words.trim()))
+    format!("<th{class}>{}{unit}</th>", escape(&column.name))
 }

@@ -21,7 +21,12 @@ fn a_scene_is_the_thesis_s_by_name_and_counts() {
     let conference = key("conference", 207_512, 229_642);
     assert_eq!((conference.thesis(), conference.tessellation_of()), (None, Some(ThesisScene::Conference)));
     assert_eq!(conference.to_string(), "conference (207512)");
+    assert_eq!(key("conference-obj", 207_512, 219_830).tessellation_of(), Some(ThesisScene::Conference));
     assert_eq!(key("hall", 15_000, 9).tessellation_of(), None);
+    // A built-in scene's size is not said twice, other options are.
+    assert_eq!(key("hall:triangles=15000", 14_752, 9).to_string(), "hall (14752)");
+    assert_eq!(key("hall:triangles=15000,seed=2", 14_752, 9).to_string(), "hall:triangles=15000,seed=2 (14752)");
+    assert_eq!(key("museum6:time=3", 14_380, 1), thesis(ThesisScene::Museum));
 }
 
 #[test]
