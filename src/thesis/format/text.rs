@@ -1,13 +1,15 @@
 //! Tables for a terminal.
 
 use crate::results::table::STYLE;
-use crate::thesis::table::Table;
+use crate::thesis::table::{Cell, Table};
 use comfy_table::{CellAlignment, ColumnConstraint, Width};
 
 /// Columns of a terminal that notes are broken at; tables are made to fit it too.
 const WIDTH: usize = 100;
 /// Every scene of the thesis has room for its name.
 const NAME: usize = 10;
+/// Room for the names of rows beside descriptions.
+const KEYS: usize = 20;
 
 /// A table with its title above and its notes below.
 pub fn write(table: &Table) -> String {
@@ -42,6 +44,15 @@ pub fn write(table: &Table) -> String {
         column.set_padding((0, u16::from(index < last)));
         if index >= table.key_columns() {
             column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    let words = |index: usize| table.rows.iter().any(|row| matches!(row.cells.get(index), Some(Cell::Text(_))));
+    for index in (0..table.columns.len()).filter(|index| words(*index)) {
+        // Descriptions share what the terminal has, and are broken at their spaces
+        let share = (WIDTH - KEYS) / table.columns.len();
+        if let Some(column) = drawn.column_mut(table.key_columns() + index) {
+            column.set_cell_alignment(CellAlignment::Left);
+            column.set_constraint(ColumnConstraint::UpperBoundary(Width::Fixed(share.max(NAME) as u16)));
         }
     }
     let width = |drawn: &comfy_table::Table| drawn.to_string().lines().map(|l| l.chars().count()).max().unwrap_or(0);
