@@ -30,7 +30,7 @@ pub const CLAIMS: [Claim; 15] = [
         basis: Basis::BuildTimes,
         cases: |data, _| cases::build_times(data),
         by_counts: None,
-        remark: "Single builds, taken as uncertain by 5 %.",
+        remark: "Measured builds are single ones and taken as uncertain by 5 %.",
     },
     Claim {
         id: "2",

@@ -110,6 +110,8 @@ pub struct Finding {
     pub verdict: Verdict,
     /// What the verdict rests on.
     pub basis: Basis,
+    /// True if it rests on frame times of a device that computes on the CPU: they are about that machine and no GPU.
+    pub without_gpu: bool,
     /// Number of scenes with a decided case.
     pub scenes: usize,
     /// Cases that agree.
@@ -153,7 +155,8 @@ fn finding(claim: &Claim, data: &Data, device: usize, thesis: &[Case]) -> Findin
         }
         None => (claim.basis, (claim.cases)(data, device)),
     };
-    if software && basis == Basis::FrameTimes {
+    let without_gpu = software && basis == Basis::FrameTimes;
+    if without_gpu {
         warnings.push("About this machine only: the device computes on the CPU and is no GPU.".to_owned());
     }
     if !claim.remark.is_empty() {
@@ -188,6 +191,7 @@ fn finding(claim: &Claim, data: &Data, device: usize, thesis: &[Case]) -> Findin
         device: if claim.basis == Basis::FrameTimes { data.devices[device].label.clone() } else { String::new() },
         verdict,
         basis,
+        without_gpu,
         scenes: scenes.len(),
         agreeing,
         contradicting,

@@ -65,6 +65,12 @@ pub fn sign(outcome: Outcome) -> char {
     }
 }
 
+/// What a verdict rests on, in words that do not let times of a processor pass for those of a GPU.
+fn by(finding: &Finding) -> String {
+    let words = finding.basis.in_words();
+    if finding.without_gpu { format!("{words} without a GPU") } else { words.to_owned() }
+}
+
 /// What a finding rests on, and what to beware of.
 pub fn details(finding: &Finding) -> Vec<String> {
     let mut lines = Vec::new();
@@ -78,7 +84,7 @@ pub fn details(finding: &Finding) -> Vec<String> {
         let scenes = if finding.scenes == 1 { "1 scene".into() } else { format!("{} scenes", finding.scenes) };
         lines.push(format!(
             "By {}{device}: {} of {} cases agree{noise}; rests on {scenes}.",
-            finding.basis.in_words(),
+            by(finding),
             finding.agreeing,
             finding.agreeing + finding.contradicting,
         ));
@@ -108,7 +114,7 @@ pub fn summary(findings: &[Finding], whose: &str) -> String {
         text += &format!(
             "| {} | {verdict} | {} | {} | {} | {} | {} |\n",
             finding.claim,
-            if measured { finding.basis.in_words() } else { "–" },
+            if measured { by(finding) } else { dash() },
             if measured { finding.scenes.to_string() } else { dash() },
             if measured { cases } else { dash() },
             finding.thesis.map_or_else(dash, |(agreeing, decided)| of(agreeing, decided)),

@@ -2,7 +2,7 @@
 
 use super::synthetic::{Builder, everything, sums};
 use rtbench::backend::{Config, DeviceType};
-use rtbench::thesis::claims::{Basis, Finding, Form, UNIFORM_CROWDING, Verdict, crowding, judge, write};
+use rtbench::thesis::claims::{Basis, Finding, Form, UNIFORM_CROWDING, Verdict, crowding, judge, summary, write};
 use rtbench::thesis::{measured, published};
 
 fn findings(builder: Builder) -> Vec<Finding> {
@@ -287,7 +287,9 @@ fn on_a_software_device_counts_decide_where_they_can() {
     b.trio("robots", Config::PS, 256, [3.0, 2.0, 1.0]);
     let f = finding(b, "5");
     assert_eq!((f.verdict, f.basis), (Verdict::Holds, Basis::FrameTimes));
-    assert!(f.warnings.iter().any(|w| w.contains("About this machine only")), "{f:?}");
+    assert!(f.warnings.iter().any(|w| w.contains("About this machine only")) && f.without_gpu, "{f:?}");
+    // Not even in a single line does it pass for a verdict about a GPU.
+    assert!(summary(&[f], "1 run").contains("| frame times without a GPU |"));
 }
 
 #[test]
