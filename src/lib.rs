@@ -14,6 +14,7 @@
 //! | [`cpu`] | a twin of every kernel, with the same names |
 //! | [`gpu`] | wgpu: devices, kernel assembly, uploads, timers. Only here stands a wgpu type |
 //! | [`results`] | records and their schema, journal, statistics, CSV, JSON, tables, pictures |
+//! | [`thesis`] | the thesis's numbers; tables, figures, claims and report from recorded runs |
 //! | [`bench`] | plan, verify, measure, environment: writes records. Only here (and in builds) is a clock read |
 //! | [`cli`] | one file per command; only here is anything printed |
 
@@ -29,5 +30,6 @@ pub mod gpu;
 pub mod math;
 pub mod results;
 pub mod scene;
+pub mod thesis;
 
 pub use error::{Error, Result};

@@ -16,6 +16,7 @@ mod kdtree_bins;
 pub mod kdtree_build;
 mod kdtree_events;
 mod kdtree_exact;
+pub mod memory;
 pub mod method;
 pub mod octants;
 pub mod ploc;

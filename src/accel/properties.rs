@@ -1,7 +1,7 @@
 //! What a structure is like: the columns of `structures.csv`, and how much memory it takes.
 
 use super::sah::CostModel;
-use super::{Record, Structure};
+use super::{Record, Structure, memory};
 use crate::math::Aabb;
 use crate::scene::Scene;
 use serde::{Deserialize, Serialize};
@@ -68,13 +68,12 @@ impl Structure {
     /// Bytes by the thesis's own accounting, vertices included (SPEC section 7): its BVH leaves the records out and has
     /// 40 bytes a node.
     pub fn thesis_bytes(&self, scene: &Scene) -> u64 {
-        let records = 16 * self.records().len() as u64;
-        let vertices = 32 * scene.vertices.len() as u64;
+        let (records, vertices) = (self.records().len() as u64, scene.vertices.len() as u64);
         match self {
-            Structure::Brute(_) => records + vertices,
-            Structure::Grid(s) => 8 * s.cells.len() as u64 + records + vertices,
-            Structure::KdTree(s) => 8 * s.nodes.len() as u64 + records + vertices,
-            Structure::Bvh(s) => 40 * s.nodes.len() as u64 + vertices,
+            Structure::Brute(_) => memory::grid_bytes(0, records, vertices),
+            Structure::Grid(s) => memory::grid_bytes(s.cells.len() as u64, records, vertices),
+            Structure::KdTree(s) => memory::kdtree_bytes(s.nodes.len() as u64, records, vertices),
+            Structure::Bvh(s) => memory::bvh_bytes(s.nodes.len() as u64, vertices),
         }
     }
 

@@ -4,15 +4,20 @@
 //! wrong, 2 something could not run, 130 Ctrl-C.
 
 mod build;
+mod claims;
 mod completions;
 mod device;
 mod devices;
+mod figures;
 mod output;
 mod progress;
 mod render;
+mod report;
+mod runs;
 mod scenes;
 mod structures;
 mod sweep;
+mod tables;
 mod trace;
 
 use crate::bench::environment;
@@ -35,12 +40,17 @@ Begin with:
   rtbench sweep --scene bunny.ply        the same for a scene of your own
   rtbench render --scene hall -o hall.png
   rtbench devices                        what there is to measure
+  rtbench report results/RUN -o run.html what was measured, beside the thesis of 2009
 
 Exit codes: 0 all is well, 1 a kernel's answer was wrong, 2 something could not run, 130 Ctrl-C.";
 
 #[derive(Subcommand)]
 enum Command {
     Sweep(sweep::Arguments),
+    Tables(tables::Arguments),
+    Claims(claims::Arguments),
+    Figures(figures::Arguments),
+    Report(report::Arguments),
     Render(render::Arguments),
     Build(build::Arguments),
     Trace(trace::Arguments),
@@ -70,6 +80,10 @@ fn run(command: Command) -> Result<ExitCode> {
     let done = |()| ExitCode::SUCCESS;
     match command {
         Command::Sweep(arguments) => sweep::run(&arguments),
+        Command::Tables(arguments) => tables::run(&arguments).map(done),
+        Command::Claims(arguments) => claims::run(&arguments).map(done),
+        Command::Figures(arguments) => figures::run(&arguments).map(done),
+        Command::Report(arguments) => report::run(&arguments).map(done),
         Command::Render(arguments) => render::run(&arguments).map(done),
         Command::Build(arguments) => build::run(&arguments),
         Command::Trace(arguments) => trace::run(&arguments).map(done),

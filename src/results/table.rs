@@ -6,7 +6,7 @@ use crate::backend::{Config, DeviceInfo, DeviceType};
 use comfy_table::{CellAlignment, LineStyle, Table, TableStyle};
 
 /// One line below the headings and nothing else: rows are told apart by what stands in them.
-const STYLE: TableStyle = TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
+pub(crate) const STYLE: TableStyle = TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
 
 /// What a device is, in words that say what its times are good for.
 pub fn device_in_words(device: &DeviceInfo) -> String {

@@ -11,5 +11,6 @@ mod results; // journal, CSV and JSON agree; statistics; rays and hits
 mod scene; // PLY of every kind, broken PLY of every kind, procedural scenes
 mod support; // small scenes, random numbers, the GPU if there is one
 mod sweep; // the sweep loop on a device that breaks, presets, the plan
+mod thesis; // the thesis's numbers, and tables, claims, figures and report from records
 mod traversal; // every traversal against brute force, CPU twins and GPU
 mod verify; // the verifier notices one wrong pixel

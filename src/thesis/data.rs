@@ -1,0 +1,254 @@
+//! What tables, figures and claims are made of: numbers by scene, structure, variant and device. The published numbers
+//! and those of recorded runs have the same form, so that everything is computed of both in the same way.
+
+use super::convention::Steps;
+use super::scenes::{SceneKey, ThesisScene};
+use super::variant::Variant;
+use crate::accel::Properties;
+use crate::backend::{Config, DeviceType};
+
+/// The structures of the thesis, in its order.
+pub const STRUCTURES: [&str; 3] = ["grid", "kdtree", "bvh"];
+
+/// The thesis's name for a structure, as a table's heading.
+pub fn structure_title(structure: &str) -> &str {
+    match structure {
+        "kdtree" => "kd-tree",
+        "bvh" => "BVH",
+        other => other,
+    }
+}
+
+/// All numbers of one source.
+#[derive(Clone, Debug, Default)]
+pub struct Data {
+    /// True for what the thesis printed.
+    pub published: bool,
+    /// Devices, in the order of the runs.
+    pub devices: Vec<Device>,
+    /// Scenes: the thesis's in its order, then the others by name.
+    pub scenes: Vec<Scene>,
+    /// Frame times, one per configuration.
+    pub frames: Vec<Frame>,
+    /// Counts per ray.
+    pub counts: Vec<Counts>,
+    /// Built structures.
+    pub built: Vec<Built>,
+    /// Measurements without a usable result.
+    pub failures: Vec<Failure>,
+    /// The register limit's rows of tables 5.7 and 5.8: only the thesis has them.
+    pub register_limit: Vec<RegisterLimit>,
+    /// What a reader should know about the source as a whole.
+    pub notes: Vec<String>,
+}
+
+/// A device that was measured.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Device {
+    /// Name in titles and columns; unique.
+    pub label: String,
+    /// Kind; `None` for the thesis's cards.
+    pub kind: Option<DeviceType>,
+    /// Driver, processor, system and the like, by heading; empty where unknown.
+    pub facts: Vec<(&'static str, String)>,
+    /// True if kernels had wgpu's checks in at least one run.
+    pub checked: bool,
+}
+
+impl Device {
+    /// True if its times say nothing about a GPU: the CPU twins and software rasterisers.
+    pub fn is_software(&self) -> bool {
+        matches!(self.kind, Some(DeviceType::CpuTwin | DeviceType::SoftwareRasteriser))
+    }
+}
+
+/// A scene that occurs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// Which.
+    pub key: SceneKey,
+    /// Triangles.
+    pub triangles: u64,
+    /// Vertices.
+    pub vertices: u64,
+    /// Lights, where known.
+    pub lights: Option<u64>,
+    /// Share of the surface that mirrors, 0 to 1, where known.
+    pub mirror_share: Option<f64>,
+}
+
+/// Frame times of one configuration, in milliseconds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// Index into [`Data::devices`].
+    pub device: usize,
+    /// Scene.
+    pub scene: SceneKey,
+    /// Structure's name.
+    pub structure: String,
+    /// Its options.
+    pub variant: Variant,
+    /// Rays.
+    pub config: Config,
+    /// Pixels per row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Fastest frame.
+    pub min_ms: f64,
+    /// Slowest frame.
+    pub max_ms: f64,
+    /// Mean over frames.
+    pub mean_ms: f64,
+    /// Spread over passes in percent; `None` after a single pass.
+    pub noise_pct: Option<f64>,
+    /// True if an earlier measurement of the same was replaced by this one.
+    pub repeated: bool,
+}
+
+/// Averages per ray of one type.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Counts {
+    /// Scene.
+    pub scene: SceneKey,
+    /// Structure's name.
+    pub structure: String,
+    /// Its options.
+    pub variant: Variant,
+    /// Ray type: 0 primary, 1 shadow, 2 reflected.
+    pub ray: usize,
+    /// Side of the square image in pixels that they were counted at.
+    pub resolution: u32,
+    /// Traversal steps.
+    pub steps: Steps,
+    /// Ray/triangle tests.
+    pub tests: f64,
+    /// Restarts, where the structure has them.
+    pub restarts: Option<f64>,
+}
+
+/// A built structure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Built {
+    /// Scene.
+    pub scene: SceneKey,
+    /// Structure's name.
+    pub structure: String,
+    /// Its options.
+    pub variant: Variant,
+    /// Its properties; the thesis has some of them.
+    pub properties: Properties,
+    /// Build time in milliseconds.
+    pub build_ms: Option<f64>,
+    /// Threads that built it.
+    pub threads: Option<usize>,
+    /// Processor that built it.
+    pub processor: String,
+    /// MiB by the thesis's accounting, geometry included.
+    pub thesis_mib: Option<f64>,
+    /// MiB as allocated, geometry included.
+    pub allocated_mib: Option<f64>,
+    /// True if an earlier one was replaced by this one.
+    pub repeated: bool,
+}
+
+/// A configuration without a number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Failure {
+    /// Scene.
+    pub scene: SceneKey,
+    /// Index into [`Data::devices`].
+    pub device: usize,
+    /// Structure with its options, rays and size, in words.
+    pub what: String,
+    /// Structure's name.
+    pub structure: String,
+    /// Rays.
+    pub config: Config,
+    /// Pixels per row.
+    pub width: u32,
+    /// Why.
+    pub message: String,
+}
+
+/// A row of table 5.7 or 5.8.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RegisterLimit {
+    /// Index into [`Data::devices`].
+    pub device: usize,
+    /// Scene.
+    pub scene: ThesisScene,
+    /// Structure's name.
+    pub structure: String,
+    /// Registers per thread.
+    pub registers: u32,
+    /// Occupancy in percent.
+    pub occupancy: u32,
+    /// Mean frame time.
+    pub mean_ms: f64,
+    /// Speed-up by the limit, as printed.
+    pub speedup: Option<i32>,
+}
+
+impl Data {
+    /// The frame times of a configuration with a square image of `side` pixels.
+    pub fn frame(
+        &self,
+        device: usize,
+        scene: &SceneKey,
+        (structure, variant): (&str, &Variant),
+        config: Config,
+        side: u32,
+    ) -> Option<&Frame> {
+        self.frames.iter().find(|f| {
+            (f.device, f.config, f.width, f.height) == (device, config, side, side)
+                && f.structure == structure
+                && f.scene == *scene
+                && f.variant == *variant
+        })
+    }
+
+    /// The same as the thesis would have measured it: default options, or its own resolution of the grid.
+    pub fn thesis_frame(
+        &self,
+        device: usize,
+        scene: &SceneKey,
+        structure: &str,
+        config: Config,
+        side: u32,
+    ) -> Option<&Frame> {
+        self.frame(device, scene, (structure, &Variant::of_thesis(scene.thesis(), structure)), config, side)
+    }
+
+    /// Counts of a ray type, with the thesis's options.
+    pub fn thesis_counts(&self, scene: &SceneKey, structure: &str, ray: usize) -> Option<&Counts> {
+        self.counts_of(scene, structure, &Variant::of_thesis(scene.thesis(), structure), ray)
+    }
+
+    /// Counts of a ray type.
+    pub fn counts_of(&self, scene: &SceneKey, structure: &str, variant: &Variant, ray: usize) -> Option<&Counts> {
+        let found =
+            |c: &&Counts| c.ray == ray && c.structure == structure && c.scene == *scene && c.variant == *variant;
+        self.counts.iter().find(found)
+    }
+
+    /// A built structure, with the thesis's options.
+    pub fn thesis_built(&self, scene: &SceneKey, structure: &str) -> Option<&Built> {
+        let variant = Variant::of_thesis(scene.thesis(), structure);
+        self.built.iter().find(|b| b.structure == structure && b.scene == *scene && b.variant == variant)
+    }
+
+    /// Sides of the square images that were measured on a device, from the smallest.
+    pub fn sides(&self, device: usize) -> Vec<u32> {
+        let square = self.frames.iter().filter(|f| f.device == device && f.width == f.height);
+        let mut sides: Vec<u32> = square.map(|f| f.width).collect();
+        sides.sort_unstable();
+        sides.dedup();
+        sides
+    }
+
+    /// A scene's entry.
+    pub fn scene(&self, key: &SceneKey) -> Option<&Scene> {
+        self.scenes.iter().find(|s| s.key == *key)
+    }
+}

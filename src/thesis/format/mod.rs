@@ -1,0 +1,35 @@
+//! The four forms of a table.
+
+mod csv;
+mod latex;
+mod markdown;
+mod text;
+
+pub use text::wrap;
+
+use super::table::Table;
+
+/// A form of tables.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Format {
+    /// Aligned, for a terminal of 100 columns
+    #[default]
+    Text,
+    /// GitHub's pipes
+    Markdown,
+    /// One line per number: table, row, column, unit, value, published value, ratio
+    Csv,
+    /// A table environment per table, no packages needed
+    Latex,
+}
+
+/// Tables in a form.
+pub fn write(tables: &[Table], format: Format) -> String {
+    let join = |write: fn(&Table) -> String| tables.iter().map(write).collect::<Vec<_>>().join("\n");
+    match format {
+        Format::Text => join(text::write),
+        Format::Markdown => join(markdown::write),
+        Format::Csv => csv::write(tables),
+        Format::Latex => join(latex::write),
+    }
+}

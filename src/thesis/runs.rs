@@ -1,0 +1,45 @@
+//! Recorded runs, read back.
+
+use crate::error::{Error, Result};
+use crate::results::journal::{FILE_NAME, Journal};
+use std::path::{Path, PathBuf};
+
+/// A run, with what its folder holds beside the journal.
+#[derive(Clone, Debug)]
+pub struct RecordedRun {
+    /// Its journal.
+    pub journal: Journal,
+    /// Its folder.
+    pub folder: PathBuf,
+}
+
+impl RecordedRun {
+    /// Reads a run's folder, or the journal itself.
+    ///
+    /// # Errors
+    /// [`Error::Input`]: there is none, it is damaged, or nothing was measured.
+    pub fn read(path: &Path) -> Result<RecordedRun> {
+        let mend = "give the folder that `rtbench sweep` wrote";
+        let (folder, journal) = if path.is_dir() {
+            (path.to_owned(), path.join(FILE_NAME))
+        } else {
+            (path.parent().unwrap_or(Path::new("")).to_owned(), path.to_owned())
+        };
+        if path.is_dir() && !journal.is_file() {
+            return Err(Error::file(path, None, format!("no run: there is no {FILE_NAME} in it"), mend));
+        }
+        let run = Journal::read(&journal)?;
+        if run.structures.is_empty() && run.configurations.is_empty() {
+            return Err(Error::file(&journal, None, "nothing was measured", "the run ended before its first result"));
+        }
+        Ok(RecordedRun { journal: run, folder })
+    }
+
+    /// Reads several.
+    ///
+    /// # Errors
+    /// Of the first that cannot be read.
+    pub fn read_all(paths: &[PathBuf]) -> Result<Vec<RecordedRun>> {
+        paths.iter().map(|path| RecordedRun::read(path)).collect()
+    }
+}

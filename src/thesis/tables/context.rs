@@ -1,0 +1,127 @@
+//! What all tables share: their rows, cells beside the published ones, and the lines that explain what is missing.
+
+use super::{Options, Rows};
+use crate::backend::Config;
+use crate::thesis::data::Data;
+use crate::thesis::scenes::{SceneKey, ThesisScene};
+use crate::thesis::table::{Cell, Column, Row, Table};
+
+/// Most failed measurements that a note spells out.
+const MAX_SPELT_OUT: usize = 4;
+
+/// Where numbers come from and what is asked for.
+pub struct Context<'a> {
+    /// Measured, or published.
+    pub data: &'a Data,
+    /// Published.
+    pub published: &'a Data,
+    /// What is asked for.
+    pub options: &'a Options,
+}
+
+impl Context<'_> {
+    /// Scenes of a table's rows: the thesis's nine, then the others that were measured.
+    pub fn scenes(&self) -> Vec<SceneKey> {
+        let mut scenes: Vec<SceneKey> = ThesisScene::ALL.into_iter().map(SceneKey::Thesis).collect();
+        if self.options.rows != Rows::Thesis {
+            scenes.extend(self.data.scenes.iter().map(|s| s.key.clone()).filter(|key| key.thesis().is_none()));
+        }
+        scenes
+    }
+
+    /// A cell: the same question to both sources.
+    pub fn cell(&self, ask: impl Fn(&Data) -> Option<f64>) -> Cell {
+        let thesis = if self.options.beside { ask(self.published) } else { None };
+        Cell::Number { value: ask(self.data), thesis }
+    }
+
+    /// The same for what depends on the device: the published card is the one that was chosen.
+    pub fn device_cell(&self, device: usize, ask: impl Fn(&Data, usize) -> Option<f64>) -> Cell {
+        let thesis = if self.options.beside { ask(self.published, self.options.card) } else { None };
+        Cell::Number { value: ask(self.data, device), thesis }
+    }
+
+    /// A table with the notes that follow from its rows: which scenes are absent and what the others are.
+    pub fn table(
+        &self,
+        id: &str,
+        title: String,
+        keys: &[&str],
+        columns: Vec<Column>,
+        rows: Vec<(SceneKey, Row)>,
+    ) -> Table {
+        let notes = self.absences(&rows);
+        Table {
+            id: id.into(),
+            title,
+            keys: keys.iter().map(|key| (*key).to_owned()).collect(),
+            columns,
+            rows: rows.into_iter().map(|(_, row)| row).collect(),
+            notes,
+            beside: self.options.beside,
+        }
+    }
+
+    /// Notes on scenes without any number, on gaps, and on scenes that are not the thesis's.
+    fn absences(&self, rows: &[(SceneKey, Row)]) -> Vec<String> {
+        let mut absent: Vec<&SceneKey> = Vec::new();
+        let (mut gaps, mut tessellations, mut others) = (false, Vec::new(), false);
+        for (key, row) in rows {
+            let of_scene = || rows.iter().filter(|(other, _)| other == key);
+            if of_scene().all(|(_, row)| !row.is_filled()) {
+                if !absent.contains(&key) {
+                    absent.push(key);
+                }
+                continue;
+            }
+            gaps |= row.cells.iter().any(|cell| !cell.is_filled());
+            match key.tessellation_of() {
+                Some(scene) if !tessellations.contains(&(key, scene)) => tessellations.push((key, scene)),
+                None if key.thesis().is_none() => others = true,
+                _ => {}
+            }
+        }
+        let mut notes = Vec::new();
+        let verb = if self.data.published { "Not published" } else { "Not measured" };
+        if !absent.is_empty() {
+            let names: Vec<String> = absent.iter().map(ToString::to_string).collect();
+            notes.push(format!("{verb}: {}.", names.join(", ")));
+        }
+        if gaps {
+            notes.push(format!("A dash: {}.", verb.to_lowercase()));
+        }
+        for (key, scene) in tessellations {
+            notes.push(format!(
+                "{key} is another tessellation than the thesis's {} and stands in a row of its own.",
+                scene.name()
+            ));
+        }
+        if others {
+            notes.push("Scenes with a number in brackets (their triangles) are not the thesis's.".into());
+        }
+        notes
+    }
+
+    /// What was measured and gave no number, for a device and one or all ray configurations.
+    pub fn failures(&self, device: usize, config: Config, sides: &[u32]) -> Option<String> {
+        let of_table = self
+            .data
+            .failures
+            .iter()
+            .filter(|f| f.device == device && f.config == config && (sides.is_empty() || sides.contains(&f.width)));
+        let all: Vec<String> = of_table.map(|f| format!("{} ({})", f.what, f.message)).collect();
+        if all.is_empty() {
+            return None;
+        }
+        let spelt = all[..all.len().min(MAX_SPELT_OUT)].join("; ");
+        let more = all.len().saturating_sub(MAX_SPELT_OUT);
+        let more = if more > 0 { format!("; and {more} more") } else { String::new() };
+        Some(format!("Measured without a usable result, so without a number: {spelt}{more}."))
+    }
+}
+
+/// A note on measurements that were made more than once.
+pub fn repeated(count: usize) -> Option<String> {
+    (count > 0)
+        .then(|| format!("{count} of these measurements were made more than once; the last complete one stands here."))
+}

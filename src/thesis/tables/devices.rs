@@ -1,0 +1,96 @@
+//! Table 5.2 and the speed-ups between devices of section 5.3.4.
+
+use super::context::Context;
+use super::times::CARD_CONFIGS;
+use crate::thesis::data::{Data, Device, STRUCTURES, structure_title};
+use crate::thesis::table::{Cell, Column, Form, Row, Table};
+
+/// Table 5.2; beside the thesis, its own follows.
+pub fn devices(context: &Context) -> Vec<Table> {
+    let mut tables =
+        vec![device_table(context.data, if context.data.published { "Cards compared" } else { "Devices" })];
+    if context.options.beside {
+        tables.push(device_table(context.published, "Cards compared in 2009"));
+    }
+    tables
+}
+
+/// A row per property, a column per device: descriptions are long.
+fn device_table(data: &Data, title: &str) -> Table {
+    let mut facts: Vec<&str> = Vec::new();
+    for (name, _) in data.devices.iter().flat_map(|d| &d.facts) {
+        if !facts.contains(name) {
+            facts.push(name);
+        }
+    }
+    let rows = facts.into_iter().map(|fact| {
+        let cell = |device: &Device| {
+            let found = device.facts.iter().find(|(name, text)| *name == fact && !text.is_empty());
+            found.map_or(Cell::number(None), |(_, text)| Cell::Text(text.clone()))
+        };
+        Row { keys: vec![fact.to_owned()], cells: data.devices.iter().map(cell).collect() }
+    });
+    Table {
+        id: "5.2".into(),
+        title: title.into(),
+        keys: vec!["device".into()],
+        rows: rows.collect(),
+        columns: data.devices.iter().map(|d| Column::new(&d.label, "", Form::Whole)).collect(),
+        notes: data.notes.iter().map(|note| format!("Note: {note}.")).collect(),
+        beside: false,
+    }
+}
+
+/// Speed-ups: how many times as long each further device takes as the first, at the largest common resolution; and how
+/// far they range per structure. None with a single device.
+pub fn speedups(context: &Context) -> Vec<Table> {
+    let mut tables = pairs(context.data);
+    if context.options.beside && !tables.is_empty() {
+        tables.extend(pairs(context.published));
+    }
+    tables
+}
+
+fn pairs(data: &Data) -> Vec<Table> {
+    (1..data.devices.len()).filter_map(|other| pair(data, other)).collect()
+}
+
+/// The first device and another.
+fn pair(data: &Data, other: usize) -> Option<Table> {
+    let columns = STRUCTURES.map(|s| Column::new(structure_title(s), "times", Form::Fixed(2)));
+    let mut rows = Vec::new();
+    let mut range = [(f64::INFINITY, 0.0f64); 3];
+    for scene in &data.scenes {
+        for (config, _) in CARD_CONFIGS {
+            let quotient = |structure: &str, side| {
+                let time = |device| data.thesis_frame(device, &scene.key, structure, config, side);
+                Some(time(other)?.mean_ms / time(0)?.mean_ms)
+            };
+            let common = |side: &u32| STRUCTURES.iter().any(|s| quotient(s, *side).is_some());
+            let Some(side) = data.sides(0).into_iter().rev().find(common) else { continue };
+            let quotients = STRUCTURES.map(|s| quotient(s, side));
+            for (range, quotient) in range.iter_mut().zip(quotients).filter_map(|(r, q)| Some((r, q?))) {
+                *range = (range.0.min(quotient), range.1.max(quotient));
+            }
+            let keys = vec![scene.key.to_string(), format!("{config:?}"), side.to_string()];
+            rows.push(Row { keys, cells: quotients.map(Cell::number).into() });
+        }
+    }
+    let ranges = STRUCTURES.iter().zip(range).filter(|(_, (low, _))| low.is_finite());
+    let ranges: Vec<String> =
+        ranges.map(|(s, (low, high))| format!("{} {low:.1} to {high:.1}", structure_title(s))).collect();
+    let (first, second) = (&data.devices[0].label, &data.devices[other].label);
+    let key = |name: &str| name.to_owned();
+    (!rows.is_empty()).then(|| Table {
+        id: "5.3.4".into(),
+        title: format!("Speed-up of {first} over {second}"),
+        keys: vec![key("scene"), key("rays"), key("side")],
+        columns: columns.into(),
+        rows,
+        notes: vec![
+            format!("Mean frame time on {second} / on {first}, at the largest common resolution."),
+            format!("Range: {}.", ranges.join(", ")),
+        ],
+        beside: false,
+    })
+}

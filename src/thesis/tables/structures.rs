@@ -1,0 +1,155 @@
+//! Tables 5.1 and 5.3 to 5.6: what does not depend on the device.
+
+use super::context::{Context, repeated};
+use crate::accel::Properties;
+use crate::thesis::data::{Built, STRUCTURES, structure_title};
+use crate::thesis::scenes::SceneKey;
+use crate::thesis::table::{Cell, Column, Form, Row, Table};
+
+/// A column of table 5.4, 5.5 or 5.6: heading, unit, form, and where its number stands.
+type PropertyColumn = (&'static str, &'static str, Form, fn(&Built) -> Option<f64>);
+
+/// Table 5.1.
+pub fn scenes(context: &Context) -> Table {
+    let columns = ["triangles", "vertices", "lights"].map(|name| Column::new(name, "", Form::Whole));
+    let rows = context.scenes().into_iter().map(|key| {
+        let cells = vec![
+            context.cell(|data| Some(data.scene(&key)?.triangles as f64)),
+            context.cell(|data| Some(data.scene(&key)?.vertices as f64)),
+            context.cell(|data| Some(data.scene(&key)?.lights? as f64)),
+        ];
+        (key.clone(), Row { keys: vec![key.to_string()], cells })
+    });
+    let rows: Vec<_> = rows.collect();
+    let mut table = context.table("5.1", "Scenes".into(), &["scene"], columns.into(), rows);
+    if !context.data.published {
+        table.notes.push(
+            "Lights are those of the scene's file; where it has none, the camera path or the catalogue brings one."
+                .into(),
+        );
+    }
+    table
+}
+
+/// Table 5.3.
+pub fn build_times(context: &Context) -> Table {
+    let columns = STRUCTURES.map(|s| Column::new(structure_title(s), "ms", Form::Time));
+    let rows: Vec<_> = context
+        .scenes()
+        .into_iter()
+        .map(|key| {
+            let cells = STRUCTURES.map(|s| context.cell(|data| data.thesis_built(&key, s)?.build_ms));
+            (key.clone(), Row { keys: vec![key.to_string()], cells: cells.into() })
+        })
+        .collect();
+    let built: Vec<&Built> = shown(context, &rows, &STRUCTURES);
+    let mut table = context.table("5.3", "Build times".into(), &["scene"], columns.into(), rows);
+    for structure in STRUCTURES {
+        let of = built.iter().filter(|b| b.structure == structure);
+        let mut how: Vec<String> =
+            of.map(|b| format!("{} of {}", threads(b.threads.unwrap_or(1)), processor(&b.processor))).collect();
+        how.sort();
+        how.dedup();
+        if !how.is_empty() {
+            table.notes.push(format!("{} was built on {}.", structure_title(structure), how.join(", and on ")));
+        }
+    }
+    if context.options.beside {
+        table.notes.push("Published: one core of an Athlon64 X2, 2 GHz.".into());
+    }
+    table.notes.extend(repeated(built.iter().filter(|b| b.repeated).count()));
+    table
+}
+
+fn threads(threads: usize) -> String {
+    if threads == 1 { "one thread".into() } else { format!("{threads} threads") }
+}
+
+fn processor(name: &str) -> &str {
+    if name.is_empty() { "an unknown processor" } else { name }
+}
+
+/// The structures behind a table's rows.
+fn shown<'a>(context: &Context<'a>, rows: &[(SceneKey, Row)], structures: &[&str]) -> Vec<&'a Built> {
+    let data = context.data;
+    rows.iter().flat_map(|(key, _)| structures.iter().filter_map(|s| data.thesis_built(key, s))).collect()
+}
+
+/// Table 5.4.
+pub fn grid(context: &Context) -> Table {
+    let columns: [PropertyColumn; 6] = [
+        ("x", "cells", Form::Whole, |b| whole(b, |p| p.cells_x)),
+        ("y", "cells", Form::Whole, |b| whole(b, |p| p.cells_y)),
+        ("z", "cells", Form::Whole, |b| whole(b, |p| p.cells_z)),
+        ("fullest cell", "triangles", Form::Whole, |b| whole(b, |p| p.max_cell_triangles)),
+        ("references", "per triangle", Form::Fixed(2), |b| b.properties.references_per_triangle),
+        SIZE,
+    ];
+    let mut table = properties(context, "5.4", "grid", "Properties of the uniform grid", &columns);
+    let by_rule = |key: &&SceneKey| {
+        let setting = key.thesis().and_then(|scene| scene.grid_setting());
+        setting.is_some() && context.data.thesis_built(key, "grid").is_none()
+    };
+    for key in context.data.scenes.iter().map(|s| &s.key).filter(by_rule) {
+        if let Some((axis, cells)) = key.thesis().and_then(|scene| scene.grid_setting()) {
+            table.notes.push(format!(
+                "The thesis set the grid of {key} by hand: measure --structure grid:{axis}={cells} to fill its row."
+            ));
+        }
+    }
+    table
+}
+
+/// Table 5.5.
+pub fn kdtree(context: &Context) -> Table {
+    let columns: [PropertyColumn; 5] = [
+        ("leaves", "", Form::Whole, |b| whole(b, |p| p.leaves)),
+        ("empty leaves", "", Form::Whole, |b| whole(b, |p| p.empty_leaves)),
+        ("largest leaf", "triangles", Form::Whole, |b| whole(b, |p| p.max_leaf_triangles)),
+        ("references", "per triangle", Form::Fixed(2), |b| b.properties.references_per_triangle),
+        SIZE,
+    ];
+    properties(context, "5.5", "kdtree", "Properties of the kd-tree", &columns)
+}
+
+/// Table 5.6.
+pub fn bvh(context: &Context) -> Table {
+    let columns: [PropertyColumn; 2] = [("nodes", "", Form::Whole, |b| whole(b, |p| p.nodes)), SIZE];
+    properties(context, "5.6", "bvh", "Properties of the BVH", &columns)
+}
+
+const SIZE: PropertyColumn = ("size", "MiB", Form::Fixed(2), |b| b.thesis_mib);
+
+fn whole(built: &Built, property: fn(&Properties) -> Option<u32>) -> Option<f64> {
+    property(&built.properties).map(f64::from)
+}
+
+fn properties(context: &Context, id: &str, structure: &str, title: &str, columns: &[PropertyColumn]) -> Table {
+    let mut headings: Vec<Column> =
+        columns.iter().map(|(name, unit, form, _)| Column::new(name, unit, *form)).collect();
+    if !context.data.published {
+        headings.push(Column::new("allocated", "MiB", Form::Fixed(2)));
+    }
+    let rows: Vec<_> = context
+        .scenes()
+        .into_iter()
+        .map(|key| {
+            let column = |of: &fn(&Built) -> Option<f64>| context.cell(|data| of(data.thesis_built(&key, structure)?));
+            let mut cells: Vec<Cell> = columns.iter().map(|(.., of)| column(of)).collect();
+            if !context.data.published {
+                let allocated = context.data.thesis_built(&key, structure).and_then(|b| b.allocated_mib);
+                cells.push(Cell::number(allocated));
+            }
+            (key.clone(), Row { keys: vec![key.to_string()], cells })
+        })
+        .collect();
+    let count = shown(context, &rows, &[structure]).iter().filter(|b| b.repeated).count();
+    let mut table = context.table(id, title.into(), &["scene"], headings, rows);
+    if !context.data.published {
+        table
+            .notes
+            .push("Sizes include the geometry: by the thesis's accounting (SPEC section 7), and as allocated.".into());
+    }
+    table.notes.extend(repeated(count));
+    table
+}

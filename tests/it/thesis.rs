@@ -1,0 +1,10 @@
+//! The thesis: its published numbers, and what is made of recorded runs.
+
+mod claims; // every claim in every verdict, also where it is false
+mod command; // the program: broken and empty runs, files, splicing
+mod figures; // XML, what is drawn and what is not
+mod published; // every row parses; the memory model against all 27 sizes
+mod report; // one page, nothing from outside, everything escaped
+mod runs; // which scene, device and variant a record belongs to
+mod synthetic; // runs with known content
+mod tables; // every table, published and measured, in every form

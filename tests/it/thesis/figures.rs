@@ -1,0 +1,61 @@
+//! Figures: well-formed XML, what is drawn and what is not.
+
+use super::synthetic::{Builder, everything};
+use rtbench::backend::Config;
+use rtbench::thesis::figures::{Figure, all};
+use rtbench::thesis::{measured, published};
+
+fn count(figure: &Figure, tag: &str) -> usize {
+    let document = roxmltree::Document::parse(&figure.svg).unwrap();
+    document.descendants().filter(|node| node.has_tag_name(("http://www.w3.org/2000/svg", tag))).count()
+}
+
+#[test]
+fn everything_that_has_data_is_drawn_as_xml() {
+    let (figures, missing) = all(&measured::data(&everything())).unwrap();
+    assert!(missing.is_empty(), "{missing:?}");
+    for id in ["5.1", "5.2", "5.3", "5.4", "bars"] {
+        assert!(figures.iter().any(|f| f.id == id), "{id}");
+    }
+    let mut names: Vec<&str> = figures.iter().map(|f| f.name.as_str()).collect();
+    for figure in &figures {
+        assert!(count(figure, "text") > 5 && count(figure, "title") == 1, "{}", figure.name);
+        assert!(figure.svg.contains("prefers-color-scheme:dark") && figure.svg.contains("fill=\"#FFFFFF\""));
+        // Units on the axis of time.
+        assert!(figure.svg.contains("[ms]"), "{}", figure.name);
+    }
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), figures.len(), "two figures of the same name");
+    // Figure 5.1 has a line with three points and a ring around the rule's.
+    let figure = figures.iter().find(|f| f.id == "5.1").unwrap();
+    assert_eq!((count(figure, "circle"), count(figure, "polygon")), (1, 3 + 1), "{}", figure.svg);
+    // 5.4: two numbers of tiles and the whole image, three sizes each, with a legend.
+    let figure = figures.iter().find(|f| f.id == "5.4").unwrap();
+    assert!(figure.svg.contains("whole image") && figure.svg.contains("4x4 tiles"));
+    assert_eq!(all(&measured::data(&everything())).unwrap().0, figures, "not the same bytes");
+}
+
+#[test]
+fn a_figure_without_data_is_named() {
+    let (figures, missing) = all(&published::data()).unwrap();
+    assert_eq!(missing.iter().map(|m| m.id).collect::<Vec<_>>(), ["5.1", "5.3", "5.4"]);
+    // Both cards, three configurations: 5.2 and bars.
+    assert_eq!(figures.len(), 12);
+    let mut b = Builder::new();
+    b.frame("bunny", "grid", Config::P, 64, 1.0).verified = false;
+    let (figures, missing) = all(&measured::data(&[b.run])).unwrap();
+    assert_eq!((figures.len(), missing.len()), (0, 5));
+}
+
+#[test]
+fn odd_names_and_numbers_do_not_break_a_figure() {
+    for ms in [1e-6, 1.0, 1e9] {
+        let mut b = Builder::new().device("<GPU> & \"co\"", rtbench::backend::DeviceType::DiscreteGpu);
+        b.frame("a<b>&c", "grid", Config::P, 64, ms);
+        b.frame("a<b>&c", "grid", Config::P, 128, ms);
+        let (figures, _) = all(&measured::data(&[b.run])).unwrap();
+        assert_eq!(figures.len(), 2);
+        assert!(figures.iter().all(|f| count(f, "text") > 3));
+    }
+}

@@ -1,0 +1,83 @@
+//! The report: one page, nothing from outside, everything escaped.
+
+use super::synthetic::{Builder, everything, scene};
+use rtbench::backend::Config;
+use rtbench::thesis::runs::RecordedRun;
+use rtbench::thesis::tables::Options;
+use rtbench::thesis::{measured, published, report};
+
+fn page(runs: &[RecordedRun]) -> rtbench::Result<String> {
+    let (data, published) = (measured::data(runs), published::data());
+    let sources = report::Sources { runs, data: &data, published: &published };
+    report::write(&sources, &Options { beside: true, ..Options::default() })
+}
+
+/// Elements that would fetch something.
+fn assert_self_contained(html: &str) {
+    for (index, _) in html.match_indices("src=\"").chain(html.match_indices("href=\"")) {
+        let value = html[index..].split('"').nth(1).unwrap();
+        assert!(value.starts_with("data:image/png;base64,") || value.starts_with('#'), "{value}");
+    }
+    for word in ["<script", "<link", "<iframe", "@import", "url(", "http://", "https://", "srcset", "onload"] {
+        assert!(!html.contains(word), "{word}");
+    }
+}
+
+#[test]
+fn everything_is_on_one_page() {
+    let runs = everything();
+    let html = page(&runs).unwrap();
+    assert_self_contained(&html);
+    assert_eq!(html, page(&runs).unwrap(), "not the same bytes");
+    for id in ["claims", "tables", "figures", "pictures", "differences", "provenance"] {
+        assert!(html.contains(&format!("<section id=\"{id}\">")) && html.contains(&format!("href=\"#{id}\"")), "{id}");
+    }
+    for id in rtbench::thesis::tables::IDS {
+        assert!(html.contains(&format!("<h3>Table {id}: ")), "{id}");
+    }
+    assert!(html.matches("<svg").count() >= 8 && html.matches("<style>").count() == 1);
+    assert!(html.contains("Fast GPU") && html.contains("Slow GPU") && html.contains("register limit"));
+    // Every element that was opened is closed.
+    for tag in ["section", "table", "tr", "td", "div", "figure", "svg", "details", "dl", "p", "h3"] {
+        let open = html.matches(&format!("<{tag}>")).count() + html.matches(&format!("<{tag} ")).count();
+        assert_eq!(open, html.matches(&format!("</{tag}>")).count(), "{tag}");
+    }
+    // The published numbers alone are a page as well.
+    let data = published::data();
+    let sources = report::Sources { runs: &[], data: &data, published: &data };
+    assert_self_contained(&report::write(&sources, &Options::default()).unwrap());
+}
+
+#[test]
+fn nothing_in_a_record_becomes_markup() {
+    let evil = "<script src=x onerror='a'>&\"";
+    let mut b = Builder::new().device(evil, rtbench::backend::DeviceType::DiscreteGpu);
+    b.frame("bunny", "grid", Config::P, 64, 1.0).scene = scene(evil);
+    b.frame("museum", "bvh", Config::P, 64, 1.0).status = rtbench::results::record::Status::Error;
+    b.run.journal.configurations[1].message = evil.into();
+    b.run.journal.provenance.arguments.push(evil.into());
+    let html = page(&[b.run]).unwrap();
+    assert!(!html.contains("<script") && html.contains("&lt;script"), "{html}");
+    // Inside an attribute a quote would be the way out.
+    assert!(!html.contains("=\"<") && html.matches("onerror=&#39;").count() > 5);
+}
+
+#[test]
+fn pictures_are_embedded_and_broken_ones_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let pictures = folder.path().join("pictures");
+    std::fs::create_dir(&pictures).unwrap();
+    for name in ["hall.png", "hall-steps.png", "bunny.png"] {
+        rtbench::results::picture::write_png(&pictures.join(name), 2, 1, &[255; 8]).unwrap();
+    }
+    std::fs::write(pictures.join("notes.txt"), "no picture").unwrap();
+    let mut runs = everything();
+    runs[0].folder = folder.path().into();
+    let html = page(&runs).unwrap();
+    assert_eq!(html.matches("src=\"data:image/png;base64,iVBOR").count(), 3);
+    assert!(html.contains("alt=\"hall, steps per pixel"));
+    assert_self_contained(&html);
+    std::fs::write(pictures.join("bad.png"), "GIF89a").unwrap();
+    let error = page(&runs).unwrap_err().to_string();
+    assert!(error.contains("bad.png: no PNG") && !error.contains('\n'), "{error}");
+}
