@@ -7,6 +7,7 @@ mod build;
 mod completions;
 mod device;
 mod devices;
+mod library;
 mod output;
 mod progress;
 mod render;

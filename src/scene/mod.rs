@@ -1,8 +1,11 @@
 //! The scene: one indexed triangle mesh, materials, point lights (SPEC section 1).
 //!
-//! [`Scene`] is the only thing that the rest of the crate sees of a file. [`load`] finds a reader by extension, or a
-//! procedural scene by name; adding a format is one file and one line in [`FORMATS`].
+//! [`Scene`] is the only thing that the rest of the crate sees of a file. [`load_in`] finds a reader by extension, or a
+//! procedural scene or one of the catalogue by name; adding a format is one file and one line in [`FORMATS`].
 
+pub mod cache;
+pub mod catalogue;
+mod load;
 pub mod normals;
 mod options;
 pub mod ply;
@@ -13,6 +16,7 @@ use crate::error::{Error, Result};
 use crate::math::{Aabb, Vertex};
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec3, Vec3A};
+pub use load::{load, load_in};
 pub use options::{MAX_SEGMENTS, Options, Up};
 pub use procedural::{Parameter, SceneInfo, list};
 use std::path::Path;
@@ -27,7 +31,7 @@ pub const MAX_ELEMENTS: usize = 1 << 27;
 pub type Reader = fn(&Path, &Options) -> Result<Scene>;
 
 /// Readers by file extension (lower case).
-pub const FORMATS: &[(&str, Reader)] = &[("ply", |path, _| ply::read(path))];
+pub const FORMATS: &[(&str, Reader)] = &[("ply", |path, _| ply::read(path)), (cache::EXTENSION, cache::read)];
 
 /// One triangle: three vertices and a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
@@ -269,55 +273,6 @@ impl Scene {
         let degenerate = |t: &&Triangle| normals::is_degenerate(t.vertices.map(|v| vertices[v as usize].position));
         self.degenerate_triangles = self.triangles.iter().filter(degenerate).count();
         Ok(())
-    }
-}
-
-/// Loads a scene: a file by its extension, or a procedural scene, either as `name[:key=value,...]` (see [`Options`] for
-/// the keys of files).
-///
-/// `what` is a file if one of that name exists, or if it contains a path separator or ends in a known extension.
-///
-/// # Errors
-/// [`Error::Input`] for whatever is wrong with the name, the parameters or the file.
-pub fn load(what: &str) -> Result<Scene> {
-    let (name, settings) = split_settings(what);
-    let path = Path::new(name);
-    let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
-    let reader = FORMATS.iter().find(|(known, _)| Some(*known) == extension.as_deref()).map(|(_, reader)| reader);
-    let is_file = reader.is_some() || name.contains(['/', std::path::MAIN_SEPARATOR]) || path.exists();
-    if !is_file {
-        let mut scene = procedural::build(what)?;
-        scene.complete().map_err(|(problem, mend)| Error::argument(what, problem, mend))?;
-        return Ok(scene);
-    }
-    let Some(reader) = reader else {
-        if !path.exists() {
-            return Err(Error::file(path, None, "no such file", "check the path"));
-        }
-        let known: Vec<&str> = FORMATS.iter().map(|(extension, _)| *extension).collect();
-        return Err(Error::file(
-            path,
-            None,
-            "the format is unknown: formats are told by the file's extension",
-            format!("known extensions: {}", known.join(", ")),
-        ));
-    };
-    let options = Options::parse(what, settings)?;
-    let mut scene = reader(path, &options)?;
-    scene.transform(options.up, options.scale);
-    if scene.name.is_empty() {
-        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        scene.name = format!("{stem}{}", options.suffix());
-    }
-    scene.complete().map_err(|(problem, mend)| Error::file(path, None, problem, mend))?;
-    Ok(scene)
-}
-
-/// Name or path, and what follows its last colon if that is `key=value,...`; a file may have a colon in its name.
-fn split_settings(what: &str) -> (&str, &str) {
-    match what.rsplit_once(':') {
-        Some((name, settings)) if settings.contains('=') && !Path::new(what).exists() => (name, settings),
-        _ => (what, ""),
     }
 }
 

@@ -123,6 +123,7 @@ fn each_mistake_is_one_clear_error() {
         (format!("--scene {infinite}"), vec!["infinite.ply"]),
         (format!("--scene {empty}"), vec!["empty.ply"]),
         ("--scene nosuchscene".into(), vec!["nosuchscene"]),
+        ("--scene bunny".into(), vec!["bunny", "RTBENCH_SCENES", "scenes fetch bunny"]),
         ("--resolution 0".into(), vec!["--resolution", "no pixels"]),
         ("--resolution 12x0".into(), vec!["--resolution", "no pixels"]),
         ("--resolution 100000x100000".into(), vec!["--resolution", "pixels"]),
@@ -365,7 +366,8 @@ fn lists_and_help() {
     for name in ["scan", "terrain", "sphereflake", "stadium", "hall", "room"] {
         assert!(good("scenes list").lines().any(|line| line.trim() == name), "{name}");
     }
-    assert!(good("scenes info scan:triangles=1000").contains("content hash"));
+    let text = good("scenes info scan:triangles=1000");
+    assert!(text.contains("content hash") && text.contains("kdtree, estimated"), "{text}");
     assert!(good("devices").contains("--backend cpu"));
     assert!(good("completions bash").contains("rtbench"));
     assert!(good("--version").contains("revision"));
