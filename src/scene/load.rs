@@ -28,7 +28,8 @@ pub fn load_in(what: &str, folder: Option<&Path>) -> Result<Scene> {
         return load_entry(what, entry, settings, folder);
     }
     let path = Path::new(name);
-    let built_in = procedural::list().iter().any(|info| info.name == name);
+    let bare = what.split(':').next().unwrap_or(what);
+    let built_in = procedural::list().iter().any(|info| info.name == bare);
     if !built_in && (reader_of(path).is_some() || name.contains(['/', std::path::MAIN_SEPARATOR]) || path.exists()) {
         let options = Options::parse(what, settings)?;
         let mut scene = read(name, &options)?;
@@ -38,7 +39,6 @@ pub fn load_in(what: &str, folder: Option<&Path>) -> Result<Scene> {
         return finish(scene, name, &options);
     }
     if !built_in {
-        let bare = what.split_once(':').map_or(what, |(name, _)| name);
         let mend = format!("{}; or name a file such as mesh.ply", did_you_mean(bare, &catalogue::all_names()));
         return Err(Error::argument(what, format!("no file and no scene is called `{bare}`"), mend));
     }

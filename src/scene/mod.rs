@@ -5,8 +5,11 @@
 
 pub mod cache;
 pub mod catalogue;
+pub mod gltf;
+pub mod lamps;
 mod load;
 pub mod normals;
+pub mod obj;
 mod options;
 pub mod ply;
 pub mod procedural;
@@ -31,7 +34,14 @@ pub const MAX_ELEMENTS: usize = 1 << 27;
 pub type Reader = fn(&Path, &Options) -> Result<Scene>;
 
 /// Readers by file extension (lower case).
-pub const FORMATS: &[(&str, Reader)] = &[("ply", |path, _| ply::read(path)), (cache::EXTENSION, cache::read)];
+pub const FORMATS: &[(&str, Reader)] = &[
+    ("ply", |path, _| ply::read(path)),
+    ("obj", obj::read),
+    ("gltf", gltf::read),
+    ("glb", gltf::read),
+    // The cache of any of them
+    (cache::EXTENSION, cache::read),
+];
 
 /// One triangle: three vertices and a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]

@@ -4,6 +4,8 @@ mod broken_ply;
 mod built_in;
 mod cache;
 mod catalogue;
+mod gltf;
+mod obj;
 mod ply;
 
 use rtbench::scene::{self, Scene};
