@@ -15,6 +15,7 @@
 //! | [`gpu`] | wgpu: devices, kernel assembly, uploads, timers. Only here stands a wgpu type |
 //! | [`results`] | records and their schema, journal, statistics, CSV, JSON, tables, pictures |
 //! | [`bench`] | plan, verify, measure, environment: writes records. Only here (and in builds) is a clock read |
+//! | [`fetch`] | downloads of the catalogue's scenes |
 //! | [`cli`] | one file per command; only here is anything printed |
 
 pub mod accel;
@@ -25,6 +26,7 @@ pub mod cli;
 pub mod config;
 pub mod cpu;
 pub mod error;
+pub mod fetch;
 pub mod gpu;
 pub mod math;
 pub mod results;

@@ -170,7 +170,11 @@ fn append(scene: &mut Scene, mut other: Scene) {
     }));
     scene.materials.extend(other.materials);
     scene.lights.extend(other.lights);
-    scene.warnings.extend(other.warnings);
+    for warning in other.warnings {
+        if !scene.warnings.contains(&warning) {
+            scene.warnings.push(warning);
+        }
+    }
     scene.camera = scene.camera.take().or(other.camera);
 }
 

@@ -4,6 +4,7 @@ mod broken_ply;
 mod built_in;
 mod cache;
 mod catalogue;
+mod fetch;
 mod gltf;
 mod obj;
 mod ply;

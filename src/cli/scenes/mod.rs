@@ -1,5 +1,6 @@
 //! `rtbench scenes`: what can be traced.
 
+mod fetch;
 mod info;
 mod list;
 
@@ -10,7 +11,7 @@ use crate::scene::cache;
 use clap::Subcommand;
 use std::path::PathBuf;
 
-/// List, describe and convert scenes
+/// List, describe, convert and fetch scenes
 #[derive(Subcommand, Debug)]
 #[command(after_help = EXAMPLES)]
 pub enum Command {
@@ -38,6 +39,14 @@ pub enum Command {
         #[command(flatten)]
         library: LibraryArguments,
     },
+    /// Download a scene of the catalogue from its official source, checked, into the folder of scenes
+    Fetch {
+        /// A scene of the catalogue
+        #[arg(value_name = "NAME")]
+        scene: String,
+        #[command(flatten)]
+        library: LibraryArguments,
+    },
 }
 
 const EXAMPLES: &str = "\
@@ -45,7 +54,9 @@ Examples:
   rtbench scenes list --scenes-dir ~/scenes
   rtbench scenes info bunny.ply
   rtbench scenes info hall:triangles=200000
-  rtbench scenes convert dragon_vrip.ply dragon.rtb";
+  rtbench scenes convert dragon_vrip.ply dragon.rtb
+  rtbench scenes fetch bunny --scenes-dir ~/scenes
+      what was begun is continued; nothing is overwritten";
 
 /// Runs the command.
 ///
@@ -55,6 +66,7 @@ pub fn run(command: &Command) -> Result<()> {
     match command {
         Command::List { library } => list::run(library),
         Command::Info { scene, library } => info::run(scene, library),
+        Command::Fetch { scene, library } => fetch::run(scene, library),
         Command::Convert { scene, out, library } => convert(scene, out, library),
     }
 }

@@ -38,12 +38,27 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
 /// # Errors
 /// As [`read`].
 pub fn read_bytes(path: &Path, bytes: &[u8], options: &Options) -> Result<Scene> {
-    let gltf = gltf::Gltf::from_slice(bytes).map_err(|error| refusal(path, error))?;
     let at = |(problem, mend): Fault| Error::file(path, None, problem, mend);
-    let buffers = Buffers::load(path, &gltf.document, gltf.blob.as_deref(), options).map_err(at)?;
-    let mut walk = Walk::new(&gltf.document, &buffers);
+    let unchecked = gltf::Gltf::from_slice_without_validation(bytes).map_err(|error| refusal(path, error))?;
+    let json = unchecked.document.into_json();
+    positions_exist(&json).map_err(at)?;
+    let document = gltf::Document::from_json(json).map_err(|error| refusal(path, error))?;
+    let buffers = Buffers::load(path, &document, unchecked.blob.as_deref(), options).map_err(at)?;
+    let mut walk = Walk::new(&document, &buffers);
     walk.scene().map_err(at)?;
     walk.finish().map_err(at)
+}
+
+/// The crate's validation (1.4.1) looks into the accessor of a primitive's positions before it has checked that there is
+/// one, and panics.
+fn positions_exist(json: &gltf::json::Root) -> Result<(), Fault> {
+    let positions = gltf::json::validation::Checked::Valid(gltf::Semantic::Positions);
+    let mut primitives = json.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    let beyond = |index: usize| index >= json.accessors.len();
+    match primitives.find_map(|p| p.attributes.get(&positions).map(|i| i.value()).filter(|&i| beyond(i))) {
+        Some(index) => Err((format!("a primitive uses accessor {index}, which is not there"), "export the file again")),
+        None => Ok(()),
+    }
 }
 
 /// What the crate does not like, as one line.

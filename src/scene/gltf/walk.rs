@@ -5,7 +5,7 @@ use super::{Fault, accessor, material};
 use crate::math::Vertex;
 use crate::scene::{Light, MAX_ELEMENTS, Material, Pose, Scene, SceneCamera, Triangle, lamps, normals};
 use glam::{DMat3, DMat4, DVec3, Mat4, Vec3};
-use gltf::json::extensions::scene::khr_lights_punctual::Type;
+use gltf::khr_lights_punctual::Kind;
 use gltf::mesh::Mode;
 use gltf::{Document, Node, Primitive};
 
@@ -98,10 +98,8 @@ impl<'a> Walk<'a> {
         }
         if let Some(light) = node.light() {
             let power = Vec3::from(light.color()) * light.intensity();
-            // Not `light.kind()`, which expects a spot to have a cone.
-            let json = self.document.as_json().extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
-            let kind = json.and_then(|e| e.lights.get(light.index())).map(|light| light.type_);
-            if matches!(kind, Some(gltf::json::validation::Checked::Valid(Type::Directional))) {
+            // The crate has refused spots without their cone.
+            if matches!(light.kind(), Kind::Directional) {
                 self.directions.push((world.transform_vector3(DVec3::NEG_Z).as_vec3(), power));
             } else {
                 self.points.push((world.transform_point3(DVec3::ZERO).as_vec3(), power));

@@ -7,13 +7,14 @@ use glam::{DVec2, DVec3, Vec3};
 const MAX_CORNERS: usize = 4096;
 
 /// Triangles of a polygon, as indices of its corners: always `corners - 2`, so that triangles can be counted from the file.
-/// Convex ones become the fan (0, k + 1, k + 2). Concave ones are clipped ear by ear in the plane that shows the most of
-/// them; if that fails (they cut themselves) they become the fan as well.
+/// A polygon becomes the fan (0, k + 1, k + 2) wherever the fan covers it, as it does if it is convex, and if all of it can
+/// be seen from its first corner. Others are clipped ear by ear in the plane that shows the most of them; if that fails
+/// (they cut themselves) they become the fan as well.
 pub fn triangulate(corners: usize, point: impl Fn(usize) -> Vec3, mut emit: impl FnMut([usize; 3])) {
     if corners > 3 && corners <= MAX_CORNERS {
         let points: Vec<DVec3> = (0..corners).map(|i| point(i).as_dvec3()).collect();
         let normal = newell(&points);
-        if !convex(&points, normal)
+        if !fan_covers(&points, normal)
             && let Some(ears) = ears(&points, normal)
         {
             ears.into_iter().for_each(emit);
@@ -29,14 +30,11 @@ fn newell(points: &[DVec3]) -> DVec3 {
     points.iter().zip(next).map(|(a, b)| (*a - points[0]).cross(*b - points[0])).sum()
 }
 
-/// True if no corner turns against the normal, beyond what rounding of coordinates may do.
-fn convex(points: &[DVec3], normal: DVec3) -> bool {
-    let n = points.len();
+/// True if no triangle of the fan turns against the normal, beyond what rounding of coordinates may do: then the triangles
+/// do not overlap, since their signed areas add up to the polygon's.
+fn fan_covers(points: &[DVec3], normal: DVec3) -> bool {
     let slack = 1e-6 * normal.length_squared();
-    (0..n).all(|i| {
-        let (a, b, c) = (points[i], points[(i + 1) % n], points[(i + 2) % n]);
-        (b - a).cross(c - b).dot(normal) >= -slack
-    })
+    points[1..].windows(2).all(|p| (p[0] - points[0]).cross(p[1] - points[0]).dot(normal) >= -slack)
 }
 
 /// The triangles of ear clipping, if there are as many as there should be; wound as the polygon is.
@@ -84,6 +82,9 @@ mod tests {
         for plane in PLANES {
             let hexagon = [[0.0, 0.0], [1.0, -1.0], [2.0, 0.0], [2.0, 1.0], [1.0, 2.0], [0.0, 1.0]];
             assert_eq!(triangles(&hexagon, plane), [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]]);
+            // An arrow from its notch, and from its tip: all of it can be seen.
+            let arrow = [[0.0, 1.0], [-2.0, 2.0], [0.0, -1.0], [2.0, 2.0]];
+            assert_eq!(triangles(&arrow, plane), [[0, 1, 2], [0, 2, 3]]);
         }
     }
 

@@ -30,6 +30,9 @@ fn entries_are_sound() {
             assert!(inside(&archive.member), "{name}");
             assert!(entry.file.iter().any(|c| c.path == archive.to), "{name}: what is fetched would not be found");
         }
+        if let Some(path) = &entry.camera_path {
+            assert!(rtbench::camera::names().contains(&path.as_str()), "{name}: no camera path {path}");
+        }
         assert!(entry.options.split(',').all(|o| o.is_empty() || o.contains('=')), "{name}");
     }
     assert_eq!(

@@ -68,8 +68,9 @@ fn normals_are_given_smooth_or_flat() {
     let faces = ["f 1 2 3 4\n", "f 2 5 6 3\n"];
     let smooth = load(&format!("{roof}{}{}", faces[0], faces[1]));
     assert_eq!(smooth.vertices.len(), 6);
-    let edge = Vec3::new(1.0, 0.0, 1.0).normalize();
-    assert!(smooth.vertices[1].normal.abs_diff_eq(edge, 1e-6));
+    // Weighted by area: one triangle of the first square touches the corner, both of the second do.
+    let edge = Vec3::new(2.0, 0.0, 1.0).normalize();
+    assert!(smooth.vertices[1].normal.abs_diff_eq(edge, 1e-6), "{:?}", smooth.vertices);
     // Other groups, and none: the edge is sharp.
     for (first, second) in [("s 1\n", "s 2\n"), ("s off\n", ""), ("s 0\n", "")] {
         let sharp = load(&format!("{roof}{first}{}{second}{}", faces[0], faces[1]));
@@ -289,6 +290,6 @@ fn sponza_is_as_somebody_else_reads_it() {
         all += 1;
         other += usize::from(a != b);
     }
-    // Concave polygons are not fans here.
-    assert!(all == 66_450 && other < 700, "{other} of {all} differ");
+    // Polygons that a fan does not cover are not fans here.
+    assert!(all == 66_450 && other < 500, "{other} of {all} differ");
 }
