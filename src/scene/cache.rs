@@ -57,6 +57,7 @@ struct Header {
     text: u64,
     background: [f32; 3],
     pad: u32,
+    degenerate: u64,
 }
 
 /// A pose, with everything in double precision.
@@ -149,6 +150,7 @@ pub fn write(scene: &Scene, source: &Source, path: &Path) -> Result<()> {
         text: text.len() as u64,
         background: scene.background.to_array(),
         pad: 0,
+        degenerate: scene.degenerate_triangles as u64,
     };
     let parts: [&[u8]; 6] = [
         bytemuck::cast_slice(&scene.vertices),
@@ -250,8 +252,7 @@ pub fn read(path: &Path, _: &Options) -> Result<Scene> {
         background: Vec3::from(header.background),
         camera_path: texts.camera_path,
         camera: (!frames.is_empty()).then_some(SceneCamera { field_of_view, frames }),
-        // Counted again by whoever loads it
-        degenerate_triangles: 0,
+        degenerate_triangles: header.degenerate as usize,
         warnings: texts.warnings,
     })
 }
@@ -289,12 +290,14 @@ impl Header {
     }
 }
 
-/// The next `count` elements, straight into their memory.
+/// The next `count` elements, straight into their memory, hashed piece by piece while they are in the processor's cache.
 fn part<T: Pod>(file: &mut File, count: u64, hasher: &mut blake3::Hasher) -> std::io::Result<Vec<T>> {
-    let mut elements = vec![T::zeroed(); count as usize];
-    let bytes = bytemuck::cast_slice_mut(&mut elements);
-    file.read_exact(bytes)?;
-    hasher.update(bytes);
+    const PIECE: usize = 1 << 18;
+    let mut elements = bytemuck::zeroed_vec(count as usize);
+    for piece in bytemuck::cast_slice_mut(&mut elements).chunks_mut(PIECE) {
+        file.read_exact(piece)?;
+        hasher.update(piece);
+    }
     Ok(elements)
 }
 

@@ -44,6 +44,7 @@ pub fn load_in(what: &str, folder: Option<&Path>) -> Result<Scene> {
     }
     let mut scene = procedural::build(what)?;
     scene.complete().map_err(|(problem, mend)| Error::argument(what, problem, mend))?;
+    scene.count_degenerate();
     Ok(scene)
 }
 
@@ -80,7 +81,12 @@ fn load_entry(what: &str, entry: &catalogue::Entry, settings: &str, folder: Opti
 /// What every scene from a file goes through.
 fn finish(mut scene: Scene, place: &str, options: &Options) -> Result<Scene> {
     scene.transform(options.up, options.scale);
-    scene.complete().map_err(|(problem, mend)| Error::file(Path::new(place), None, problem, mend))?;
+    let path = Path::new(place);
+    scene.complete().map_err(|(problem, mend)| Error::file(path, None, problem, mend))?;
+    // A cache brings the number.
+    if !(is_cache(path) && *options == Options::default()) {
+        scene.count_degenerate();
+    }
     Ok(scene)
 }
 
@@ -121,8 +127,7 @@ pub(super) fn parts(name: &str) -> Result<Vec<PathBuf>> {
     for entry in std::fs::read_dir(path).map_err(fault)? {
         let file = entry.map_err(fault)?.path();
         // A cache of the folder's own scene may lie in it.
-        let cache = file.extension().is_some_and(|e| e.eq_ignore_ascii_case(super::cache::EXTENSION));
-        if file.is_file() && !cache && reader_of(&file).is_some() {
+        if file.is_file() && !is_cache(&file) && reader_of(&file).is_some() {
             files.push(file);
         }
     }
@@ -147,6 +152,10 @@ fn read_one(path: &Path, options: &Options) -> Result<Scene> {
 
 fn extensions() -> String {
     FORMATS.iter().map(|(extension, _)| *extension).collect::<Vec<_>>().join(", ")
+}
+
+fn is_cache(path: &Path) -> bool {
+    path.is_file() && path.extension().is_some_and(|e| e.eq_ignore_ascii_case(super::cache::EXTENSION))
 }
 
 fn reader_of(path: &Path) -> Option<Reader> {

@@ -188,18 +188,31 @@ impl Scene {
             }
         }
         let (vertices, materials) = (self.vertices.len() as u32, self.materials.len() as u32);
-        if let Some(i) = self.triangles.iter().position(|t| t.vertices.iter().any(|&v| v >= vertices)) {
+        // A pass without branches first: files are sound almost always, and this is a good part of loading a cache.
+        let (mut vertex, mut material) = (0, 0);
+        for triangle in &self.triangles {
+            let [a, b, c] = triangle.vertices;
+            vertex = vertex.max(a).max(b).max(c);
+            material = material.max(triangle.material);
+        }
+        if vertex >= vertices
+            && let Some(i) = self.triangles.iter().position(|t| t.vertices.iter().any(|&v| v >= vertices))
+        {
             let problem = format!("triangle {i} uses a vertex beyond the {vertices} that there are");
             return Some((problem, "repair the triangle's indices"));
         }
-        if let Some(i) = self.triangles.iter().position(|t| t.material >= materials) {
+        if material >= materials
+            && let Some(i) = self.triangles.iter().position(|t| t.material >= materials)
+        {
             let problem = format!("triangle {i} uses a material beyond the {materials} that there are");
             return Some((problem, "repair the triangle's material"));
         }
         if let Some(i) = self.vertices.iter().position(|v| !v.position.is_finite() || !v.normal.is_finite()) {
             return Some((format!("vertex {i} is not finite"), "remove it or repair the export"));
         }
-        if !self.bounds().diagonal().is_finite() {
+        // Vertices that no triangle uses may lie anywhere: only then it takes the way by the triangles.
+        let all = Aabb::from_points(self.vertices.iter().map(|v| v.position));
+        if !all.diagonal().is_finite() && !self.bounds().diagonal().is_finite() {
             return Some(("the scene is too large: its diagonal is not finite".into(), "scale it down"));
         }
         let colours = |m: &Material| [m.ambient, m.diffuse, m.specular];
@@ -272,17 +285,19 @@ impl Scene {
         }
     }
 
-    /// Gives what a reader may leave open (a material, the number of degenerate triangles) and checks the rest; a fault
-    /// comes back as problem and mend.
+    /// Gives a material where there is none, and checks the rest; a fault comes back as problem and mend.
     fn complete(&mut self) -> Result<(), (String, &'static str)> {
         if self.materials.is_empty() {
             self.materials.push(Material::neutral());
         }
-        self.first_fault().map_or(Ok(()), Err)?;
+        self.first_fault().map_or(Ok(()), Err)
+    }
+
+    /// Counts the triangles without area of a scene that has been checked.
+    fn count_degenerate(&mut self) {
         let vertices = &self.vertices;
         let degenerate = |t: &&Triangle| normals::is_degenerate(t.vertices.map(|v| vertices[v as usize].position));
         self.degenerate_triangles = self.triangles.iter().filter(degenerate).count();
-        Ok(())
     }
 }
 

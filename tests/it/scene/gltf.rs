@@ -239,13 +239,13 @@ fn materials_lights_and_cameras() {
                 { "type": "directional" },
             ] } }),
         ),
-        ("/cameras", json!([{ "type": "perspective", "perspective": { "yfov": 0.785398163, "znear": 0.1 } }])),
+        ("/cameras", json!([{ "type": "perspective", "perspective": { "yfov": 45f32.to_radians(), "znear": 0.1 } }])),
         ("/nodes/0", json!({ "mesh": 0, "children": [1, 2, 3, 4] })),
         ("/nodes/-", json!({ "translation": [1, 2, 3], "extensions": { "KHR_lights_punctual": { "light": 0 } } })),
         ("/nodes/-", json!({ "extensions": { "KHR_lights_punctual": { "light": 1 } } })),
         (
             "/nodes/-",
-            json!({ "rotation": [-0.70710678, 0, 0, 0.70710678], "extensions": { "KHR_lights_punctual": { "light": 2 } } }),
+            json!({ "rotation": [-0.5f32.sqrt(), 0, 0, 0.5f32.sqrt()], "extensions": { "KHR_lights_punctual": { "light": 2 } } }),
         ),
         ("/nodes/-", json!({ "translation": [0, 0, 9], "rotation": [0, 1, 0, 0], "camera": 0 })),
     ]));

@@ -166,7 +166,7 @@ fn what_shines_becomes_lights() {
     // A floor, and lamps of area 1 each: unit squares at height 5 whose normals point down.
     let lamps = |places: &[f32], emission: &str, settings: &str| {
         let mut text =
-            format!("mtllib a.mtl\nv -9 0 -9\nv -9 0 9\nv 9 0 9\nv 9 0 -9\nusemtl floor\nf 1 2 3 4\nusemtl lamp\n");
+            "mtllib a.mtl\nv -9 0 -9\nv -9 0 9\nv 9 0 9\nv 9 0 -9\nusemtl floor\nf 1 2 3 4\nusemtl lamp\n".to_owned();
         for x in places {
             text += &format!("v {x} 5 0\nv {} 5 0\nv {} 5 1\nv {x} 5 1\nf -4 -3 -2 -1\n", x + 1.0, x + 1.0);
         }
