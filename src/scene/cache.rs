@@ -16,9 +16,10 @@ use crate::error::{Error, Result};
 use crate::math::Vertex;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
-use std::io::{ErrorKind, Read, Write};
+use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// The extension of caches.
@@ -44,7 +45,7 @@ struct Header {
     field_of_view: f32,
     /// The hash of the readers' source, as text.
     readers: [u8; 16],
-    /// BLAKE3 of everything, with zeros here.
+    /// BLAKE3 of this header, with zeros here, and of the BLAKE3 of every piece of every part.
     checksum: [u8; 32],
     /// BLAKE3 of the source's bytes, zero if there is no file behind the scene.
     source: [u8; 32],
@@ -163,7 +164,7 @@ pub fn write(scene: &Scene, source: &Source, path: &Path) -> Result<()> {
     let mut hasher = blake3::Hasher::new();
     hasher.update(bytemuck::bytes_of(&header));
     for part in parts {
-        hasher.update(part);
+        part.chunks(PIECE).for_each(|piece| add(&mut hasher, &blake3::hash(piece)));
     }
     header.checksum = *hasher.finalize().as_bytes();
 
@@ -227,15 +228,15 @@ pub fn read(path: &Path, _: &Options) -> Result<Scene> {
         }
         Some(_) => {}
     }
-    let mut hasher = blake3::Hasher::new();
-    hasher.update(bytemuck::bytes_of(&Header { checksum: [0; 32], ..header }));
-    let vertices: Vec<Vertex> = part(&mut file, header.vertices, &mut hasher).map_err(unreadable)?;
-    let triangles: Vec<Triangle> = part(&mut file, header.triangles, &mut hasher).map_err(unreadable)?;
-    let materials: Vec<Material> = part(&mut file, header.materials, &mut hasher).map_err(unreadable)?;
-    let lights: Vec<Light> = part(&mut file, header.lights, &mut hasher).map_err(unreadable)?;
-    let poses: Vec<RawPose> = part(&mut file, header.poses, &mut hasher).map_err(unreadable)?;
-    let text: Vec<u8> = part(&mut file, header.text, &mut hasher).map_err(unreadable)?;
-    if *hasher.finalize().as_bytes() != header.checksum {
+    let mut parts = Parts { path, at: size_of::<Header>() as u64, hasher: blake3::Hasher::new() };
+    parts.hasher.update(bytemuck::bytes_of(&Header { checksum: [0; 32], ..header }));
+    let vertices: Vec<Vertex> = parts.next(header.vertices).map_err(unreadable)?;
+    let triangles: Vec<Triangle> = parts.next(header.triangles).map_err(unreadable)?;
+    let materials: Vec<Material> = parts.next(header.materials).map_err(unreadable)?;
+    let lights: Vec<Light> = parts.next(header.lights).map_err(unreadable)?;
+    let poses: Vec<RawPose> = parts.next(header.poses).map_err(unreadable)?;
+    let text: Vec<u8> = parts.next(header.text).map_err(unreadable)?;
+    if *parts.hasher.finalize().as_bytes() != header.checksum {
         return Err(fault("the cache is corrupt: its checksum is wrong", again));
     }
     let texts: Texts =
@@ -290,15 +291,40 @@ impl Header {
     }
 }
 
-/// The next `count` elements, straight into their memory, hashed piece by piece while they are in the processor's cache.
-fn part<T: Pod>(file: &mut File, count: u64, hasher: &mut blake3::Hasher) -> std::io::Result<Vec<T>> {
-    const PIECE: usize = 1 << 18;
-    let mut elements = bytemuck::zeroed_vec(count as usize);
-    for piece in bytemuck::cast_slice_mut(&mut elements).chunks_mut(PIECE) {
-        file.read_exact(piece)?;
-        hasher.update(piece);
+/// Bytes that are read and hashed at once.
+const PIECE: usize = 1 << 20;
+
+/// Reads the parts one behind the other, and hashes them.
+struct Parts<'a> {
+    path: &'a Path,
+    /// Where the next part begins.
+    at: u64,
+    hasher: blake3::Hasher,
+}
+
+impl Parts<'_> {
+    /// The next `count` elements, straight into their memory. Pieces are read and hashed by all threads: each while it is
+    /// in its processor's cache, and each by a handle of its own, since a handle has one position.
+    fn next<T: Pod + Send>(&mut self, count: u64) -> std::io::Result<Vec<T>> {
+        let mut elements: Vec<T> = bytemuck::zeroed_vec(count as usize);
+        let bytes: &mut [u8] = bytemuck::cast_slice_mut(&mut elements);
+        let (start, length) = (self.at, bytes.len() as u64);
+        let read = |(i, piece): (usize, &mut [u8])| {
+            let mut file = File::open(self.path)?;
+            file.seek(SeekFrom::Start(start + (i * PIECE) as u64))?;
+            file.read_exact(piece)?;
+            Ok(blake3::hash(piece))
+        };
+        let hashes: std::io::Result<Vec<blake3::Hash>> = bytes.par_chunks_mut(PIECE).enumerate().map(read).collect();
+        hashes?.iter().for_each(|hash| add(&mut self.hasher, hash));
+        self.at += length;
+        Ok(elements)
     }
-    Ok(elements)
+}
+
+/// The checksum is a hash of the pieces' hashes.
+fn add(hasher: &mut blake3::Hasher, piece: &blake3::Hash) {
+    hasher.update(piece.as_bytes());
 }
 
 fn readers() -> [u8; 16] {

@@ -188,13 +188,8 @@ impl Scene {
             }
         }
         let (vertices, materials) = (self.vertices.len() as u32, self.materials.len() as u32);
-        // A pass without branches first: files are sound almost always, and this is a good part of loading a cache.
-        let (mut vertex, mut material) = (0, 0);
-        for triangle in &self.triangles {
-            let [a, b, c] = triangle.vertices;
-            vertex = vertex.max(a).max(b).max(c);
-            material = material.max(triangle.material);
-        }
+        // Passes without branches first: files are sound almost always, and this is a good part of loading a cache.
+        let ((vertex, material), (sound, all)) = rayon::join(|| self.largest_indices(), || self.vertex_extent());
         if vertex >= vertices
             && let Some(i) = self.triangles.iter().position(|t| t.vertices.iter().any(|&v| v >= vertices))
         {
@@ -207,11 +202,10 @@ impl Scene {
             let problem = format!("triangle {i} uses a material beyond the {materials} that there are");
             return Some((problem, "repair the triangle's material"));
         }
-        if let Some(i) = self.vertices.iter().position(|v| !v.position.is_finite() || !v.normal.is_finite()) {
+        if !sound && let Some(i) = self.vertices.iter().position(|v| !v.position.is_finite() || !v.normal.is_finite()) {
             return Some((format!("vertex {i} is not finite"), "remove it or repair the export"));
         }
         // Vertices that no triangle uses may lie anywhere: only then it takes the way by the triangles.
-        let all = Aabb::from_points(self.vertices.iter().map(|v| v.position));
         if !all.diagonal().is_finite() && !self.bounds().diagonal().is_finite() {
             return Some(("the scene is too large: its diagonal is not finite".into(), "scale it down"));
         }
@@ -230,6 +224,25 @@ impl Scene {
             return Some((format!("light {i} is not finite"), "give it a finite position and colour"));
         }
         None
+    }
+
+    /// The largest vertex index and the largest material index of all triangles.
+    fn largest_indices(&self) -> (u32, u32) {
+        self.triangles.iter().fold((0, 0), |(vertex, material), triangle| {
+            let [a, b, c] = triangle.vertices;
+            (vertex.max(a).max(b).max(c), material.max(triangle.material))
+        })
+    }
+
+    /// Whether all positions and normals are finite, and the box around all positions.
+    fn vertex_extent(&self) -> (bool, Aabb) {
+        let (mut sum, mut all) = (Vec3::ZERO, Aabb::EMPTY);
+        for vertex in &self.vertices {
+            // Zero, unless something is infinite or NaN
+            sum += vertex.position * 0.0 + vertex.normal * 0.0;
+            all = Aabb { min: all.min.min(vertex.position), max: all.max.max(vertex.position) };
+        }
+        (sum == Vec3::ZERO, all)
     }
 
     /// BLAKE3 of all that decides what is traced and shaded, hexadecimal: vertices, triangles, materials, lights and
