@@ -1,11 +1,12 @@
 //! Tells the program where it comes from: git revision, whether it was changed since, compiler, profile, target.
 //! Nothing here may fail: a tarball without git builds as well, and says `unknown`.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// What the program is made of: only a change here makes it dirty.
-const SOURCES: [&str; 7] = ["src", "kernels", "camera-paths", "presets", "Cargo.toml", "Cargo.lock", "build.rs"];
+const SOURCES: [&str; 8] =
+    ["src", "kernels", "camera-paths", "presets", "scenes/catalog.toml", "Cargo.toml", "Cargo.lock", "build.rs"];
 
 fn main() {
     let revision = revision();
@@ -20,6 +21,7 @@ fn main() {
     let compiler = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".into());
     set("RUSTC", output(&compiler, &["--version"]).as_deref().unwrap_or("unknown"));
     set("PROFILE", &std::env::var("PROFILE").unwrap_or_else(|_| "unknown".into()));
+    set("READERS", &readers());
     set("TARGET", &std::env::var("TARGET").unwrap_or_else(|_| "unknown".into()));
 
     for path in SOURCES.iter().filter(|path| Path::new(path).exists()) {
@@ -29,6 +31,22 @@ fn main() {
     if let Some(log) = git(&["rev-parse", "--git-path", "logs/HEAD"]).filter(|log| Path::new(log).exists()) {
         println!("cargo::rerun-if-changed={log}");
     }
+}
+
+/// A hash (FNV-1a, 64 bits, hexadecimal) of everything that decides which scene a file gives: by it a cache is known to be
+/// stale. `DefaultHasher` would do, but may change with the compiler.
+fn readers() -> String {
+    let mut files = vec![PathBuf::from("src/math.rs"), PathBuf::from("Cargo.lock")];
+    let mut folders = vec![PathBuf::from("src/scene")];
+    while let Some(folder) = folders.pop() {
+        for path in std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
+            if path.is_dir() { folders.push(path) } else { files.push(path) }
+        }
+    }
+    files.sort();
+    let bytes = files.iter().flat_map(|file| std::fs::read(file).unwrap_or_default());
+    let hash = bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, b| (hash ^ u64::from(b)).wrapping_mul(0x100_0000_01b3));
+    format!("{hash:016x}")
 }
 
 /// The revision, if this folder is the top of a repository: a tarball unpacked inside another project's repository

@@ -16,6 +16,7 @@
 //! | [`results`] | records and their schema, journal, statistics, CSV, JSON, tables, pictures |
 //! | [`thesis`] | the thesis's numbers; tables, figures, claims and report from recorded runs |
 //! | [`bench`] | plan, verify, measure, environment: writes records. Only here (and in builds) is a clock read |
+//! | [`fetch`] | downloads of the catalogue's scenes |
 //! | [`cli`] | one file per command; only here is anything printed |
 
 pub mod accel;
@@ -26,6 +27,7 @@ pub mod cli;
 pub mod config;
 pub mod cpu;
 pub mod error;
+pub mod fetch;
 pub mod gpu;
 pub mod math;
 pub mod results;

@@ -9,6 +9,7 @@ mod bvh_bins;
 pub mod bvh_build;
 mod bvh_partition;
 mod check;
+pub mod estimate;
 pub mod grid;
 pub mod grid_build;
 pub mod kdtree;

@@ -1,12 +1,12 @@
 //! The plan of a sweep: scenes x structures x configurations x sizes, checked as a whole before anything runs.
 
-use super::preset::Preset;
+use super::preset::{Preset, PresetScene};
 use crate::accel::Selection;
 use crate::backend::{Config, DeviceInfo, Pixel, Size};
 use crate::camera::{CameraPath, View};
 use crate::error::{Error, Result};
 use crate::results::record::{PathRecord, PlanRecord, SceneRecord};
-use crate::scene::{self, Scene};
+use crate::scene::{self, Scene, catalogue};
 use std::path::PathBuf;
 
 /// Most pixels of an image, whatever the device: a frame's pixels are also held in main memory.
@@ -36,7 +36,7 @@ pub struct Request {
     pub passes: Option<usize>,
     /// Untimed frames before the first pass.
     pub warmup_frames: Option<usize>,
-    /// Folder in which presets look for scene files.
+    /// Folder with the files of the catalogue's scenes.
     pub scenes_folder: Option<PathBuf>,
 }
 
@@ -61,6 +61,8 @@ pub struct Plan {
     pub passes: usize,
     /// Untimed frames before the first pass.
     pub warmup_frames: usize,
+    /// Folder with the files of the catalogue's scenes.
+    pub scenes_folder: Option<PathBuf>,
     /// What the preset names and this machine does not have, in words.
     pub skipped: Vec<String>,
 }
@@ -83,10 +85,12 @@ impl Plan {
         let mut skipped = Vec::new();
         let scenes = if request.scenes.is_empty() {
             let mut scenes = Vec::new();
-            for scene in &preset.scene {
-                match scene.locate(request.scenes_folder.as_deref()) {
-                    Ok(what) => scenes.push(what),
-                    Err(absent) => skipped.push(absent),
+            for PresetScene { scene } in preset.scene {
+                // What is absent is named, with where to get it, and left out; nothing takes its place.
+                let entry = catalogue::find(scene.split(':').next().unwrap_or(&scene));
+                match entry.map(|entry| entry.path_in(request.scenes_folder.as_deref())) {
+                    Some(Err(absent)) => skipped.push(absent.to_string()),
+                    _ => scenes.push(scene),
                 }
             }
             scenes
@@ -118,6 +122,7 @@ impl Plan {
             frames,
             passes,
             warmup_frames,
+            scenes_folder: request.scenes_folder.clone(),
             skipped,
             preset: preset.name,
         })
@@ -131,6 +136,14 @@ impl Plan {
         self.sizes.iter().try_for_each(|&size| check_size(size, device))
     }
 
+    /// Loads one of the plan's scenes.
+    ///
+    /// # Errors
+    /// [`Error::Input`] of the scene.
+    pub fn load(&self, what: &str) -> Result<Scene> {
+        scene::load_in(what, self.scenes_folder.as_deref())
+    }
+
     /// Loads every scene and camera path once, so that a sweep does not end in the middle over a typing error, and
     /// tells what is ahead: the work of each scene in rays, roughly.
     ///
@@ -138,7 +151,7 @@ impl Plan {
     /// [`Error::Input`] of the scene or path.
     pub fn survey(&self) -> Result<Vec<u64>> {
         let rays_of = |what: &String| {
-            let scene = scene::load(what)?;
+            let scene = self.load(what)?;
             let mut rays = 0;
             for &config in &self.configs {
                 let path = self.path(&scene, config)?;

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use serde::Deserialize;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Names and contents of the presets that the program brings.
 const EMBEDDED: [(&str, &str); 2] =
@@ -35,14 +35,8 @@ pub struct Preset {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PresetScene {
-    /// A built-in scene with its parameters; a mere name where there are `files`.
+    /// A built-in scene with its parameters, a scene of the catalogue, or a file.
     pub scene: String,
-    /// Where the file may lie inside the folder of scenes; the first that exists is taken.
-    #[serde(default)]
-    pub files: Vec<PathBuf>,
-    /// Where to get it.
-    #[serde(default)]
-    pub source: String,
 }
 
 impl Preset {
@@ -72,23 +66,5 @@ impl Preset {
         })?;
         preset.name = name.to_owned();
         Ok(preset)
-    }
-}
-
-impl PresetScene {
-    /// What to load: the scene itself, or its file inside `folder`. `Err` says in words what is absent and where to
-    /// get it.
-    pub fn locate(&self, folder: Option<&Path>) -> std::result::Result<String, String> {
-        if self.files.is_empty() {
-            return Ok(self.scene.clone());
-        }
-        let found = folder.and_then(|f| self.files.iter().map(|file| f.join(file)).find(|path| path.is_file()));
-        found.map(|path| path.display().to_string()).ok_or_else(|| {
-            let place = match folder {
-                None => "no folder of scenes is given (--scenes-dir or RTBENCH_SCENES)".into(),
-                Some(folder) => format!("{} has no {}", folder.display(), self.files[0].display()),
-            };
-            format!("{}: {place}; get it from {}", self.scene, self.source)
-        })
     }
 }

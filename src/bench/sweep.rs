@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::results::journal::{self, Journal, JournalWriter};
 use crate::results::record::{ConfigurationRecord, End, Failure, Memory, Provenance, Record, SCHEMA, StructureRecord};
 use crate::results::summary::Run;
-use crate::scene::{self, Scene};
+use crate::scene::Scene;
 use std::collections::{HashMap, VecDeque};
 use std::path::Path;
 
@@ -138,7 +138,7 @@ impl Sweep<'_, '_> {
         self.context.check_interrupt()?;
         let plan = self.context.plan;
         self.say(Event::Doing(format!("loading {what}")));
-        let scene = scene::load(what)?;
+        let scene = plan.load(what)?;
         for warning in &scene.warnings {
             self.say(Event::Note(format!("{}: {warning}", scene.name)));
         }

@@ -20,6 +20,8 @@ const EMBEDDED: &[(&str, &str)] = &[
     ("stadium", include_str!("../../camera-paths/stadium.toml")),
     ("hall", include_str!("../../camera-paths/hall.toml")),
     ("room", include_str!("../../camera-paths/room.toml")),
+    ("conference-obj", include_str!("../../camera-paths/conference-obj.toml")),
+    ("sponza", include_str!("../../camera-paths/sponza.toml")),
 ];
 
 /// The names of the embedded paths.

@@ -1,5 +1,6 @@
 //! `rtbench build`: structures alone.
 
+use super::library::LibraryArguments;
 use super::output;
 use crate::accel::Selection;
 use crate::bench::plan::{self, parse_list};
@@ -9,7 +10,6 @@ use crate::results::record::StructureRecord;
 use crate::results::statistics;
 use crate::results::summary::{self, StructureRow};
 use crate::results::{files, table};
-use crate::scene;
 use clap::Args;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -18,7 +18,7 @@ use std::process::ExitCode;
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
-    /// Scene file, or built-in scene with parameters; may be repeated
+    /// Scene file, or name of a scene with options; may be repeated
     #[arg(long, required = true, value_name = "FILE|NAME[:KEY=VALUE,..]")]
     scene: Vec<String>,
     /// Structures with options; comma list, may be repeated
@@ -36,6 +36,8 @@ pub struct Arguments {
     /// Also write the table as a CSV file, with the columns of a sweep's structures.csv
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
+    #[command(flatten)]
+    library: LibraryArguments,
 }
 
 const EXAMPLES: &str = "\
@@ -57,10 +59,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     let mut rows = Vec::new();
     let mut broken = 0;
     for what in &arguments.scene {
-        let scene = scene::load(what)?;
-        for warning in &scene.warnings {
-            output::note(&format!("{}: {warning}", scene.name));
-        }
+        let scene = arguments.library.load(what)?;
         let scene_record = plan::scene_record(&scene);
         for selection in &selections {
             let mut built = selection.build(&scene, arguments.threads)?;

@@ -9,6 +9,7 @@ mod completions;
 mod device;
 mod devices;
 mod figures;
+mod library;
 mod output;
 mod progress;
 mod render;

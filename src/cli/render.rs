@@ -1,6 +1,7 @@
 //! `rtbench render`: one frame as a picture.
 
 use super::device::{self, DeviceArguments};
+use super::library::LibraryArguments;
 use super::output;
 use crate::accel::Selection;
 use crate::backend::{Config, Counters, Prepared, Size};
@@ -8,7 +9,6 @@ use crate::bench::plan;
 use crate::camera::{CameraPath, View};
 use crate::error::{Error, Result};
 use crate::results::picture;
-use crate::scene;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -16,7 +16,7 @@ use std::path::PathBuf;
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
-    /// Scene file, or built-in scene with parameters
+    /// Scene file, or name of a scene with options
     #[arg(long, value_name = "FILE|NAME[:KEY=VALUE,..]")]
     scene: String,
     /// Camera path, instead of the scene's own
@@ -43,6 +43,8 @@ pub struct Arguments {
     /// Picture
     #[arg(long, short, value_name = "FILE", default_value = "render.png")]
     out: PathBuf,
+    #[command(flatten)]
+    library: LibraryArguments,
     #[command(flatten)]
     device: DeviceArguments,
 }
@@ -94,10 +96,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let config = plan::parse_config(&arguments.config)?;
     let size = plan::parse_size(&arguments.resolution)?;
     arguments.device.check()?;
-    let scene = scene::load(&arguments.scene)?;
-    for warning in &scene.warnings {
-        output::note(&format!("{}: {warning}", scene.name));
-    }
+    let scene = arguments.library.load(&arguments.scene)?;
     let path = match &arguments.camera_path {
         Some(name) => CameraPath::load(name)?,
         None => CameraPath::for_scene(&scene, config),

@@ -1,6 +1,7 @@
 //! `rtbench sweep`: the main job.
 
 use super::device::{self, DeviceArguments};
+use super::library::LibraryArguments;
 use super::output;
 use super::progress::Progress;
 use crate::bench::environment;
@@ -26,12 +27,11 @@ pub struct Arguments {
     /// What the flags below begin with: quick, thesis, or a TOML file like presets/quick.toml
     #[arg(long, default_value = "quick", value_name = "NAME|FILE")]
     preset: String,
-    /// Scene file, or built-in scene with parameters; may be repeated
+    /// Scene file, or name of a scene with options; may be repeated
     #[arg(long, value_name = "FILE|NAME[:KEY=VALUE,..]")]
     scene: Vec<String>,
-    /// Folder in which presets look for scene files [default: the variable RTBENCH_SCENES]
-    #[arg(long, value_name = "FOLDER")]
-    scenes_dir: Option<PathBuf>,
+    #[command(flatten)]
+    library: LibraryArguments,
     /// Camera path for every scene and configuration, instead of each one's own
     #[arg(long, value_name = "FILE|NAME")]
     camera_path: Option<String>,
@@ -94,7 +94,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         frames: arguments.frames,
         passes: arguments.passes,
         warmup_frames: arguments.warmup,
-        scenes_folder: arguments.scenes_dir.clone().or_else(|| std::env::var_os("RTBENCH_SCENES").map(PathBuf::from)),
+        scenes_folder: arguments.library.folder(),
     })?;
     for absent in &plan.skipped {
         output::note(&format!("left out: {absent}"));

@@ -1,12 +1,12 @@
 //! `rtbench trace`: given rays, so that rtbench can be held against another engine.
 
 use super::device::{self, DeviceArguments};
+use super::library::LibraryArguments;
 use super::output;
 use crate::accel::Selection;
 use crate::error::Result;
 use crate::math::MISS;
 use crate::results::rays;
-use crate::scene;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -19,7 +19,7 @@ use std::path::PathBuf;
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
-    /// Scene file, or built-in scene with parameters
+    /// Scene file, or name of a scene with options
     #[arg(long, value_name = "FILE|NAME[:KEY=VALUE,..]")]
     scene: String,
     /// CSV file of rays
@@ -34,6 +34,8 @@ pub struct Arguments {
     /// CSV file of hits
     #[arg(long, short, value_name = "FILE")]
     out: PathBuf,
+    #[command(flatten)]
+    library: LibraryArguments,
     #[command(flatten)]
     device: DeviceArguments,
 }
@@ -51,10 +53,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let selection = Selection::parse(&arguments.structure)?;
     arguments.device.check()?;
     let rays = rays::read(&arguments.rays)?;
-    let scene = scene::load(&arguments.scene)?;
-    for warning in &scene.warnings {
-        output::note(&format!("{}: {warning}", scene.name));
-    }
+    let scene = arguments.library.load(&arguments.scene)?;
     let device = arguments.device.open()?;
     device::announce(&device);
     let built = selection.build(&scene, arguments.device.threads)?;

@@ -1,9 +1,15 @@
 //! The scene: one indexed triangle mesh, materials, point lights (SPEC section 1).
 //!
-//! [`Scene`] is the only thing that the rest of the crate sees of a file. [`load`] finds a reader by extension, or a
-//! procedural scene by name; adding a format is one file and one line in [`FORMATS`].
+//! [`Scene`] is the only thing that the rest of the crate sees of a file. [`load_in`] finds a reader by extension, or a
+//! procedural scene or one of the catalogue by name; adding a format is one file and one line in [`FORMATS`].
 
+pub mod cache;
+pub mod catalogue;
+pub mod gltf;
+pub mod lamps;
+mod load;
 pub mod normals;
+pub mod obj;
 mod options;
 pub mod ply;
 pub mod procedural;
@@ -13,6 +19,7 @@ use crate::error::{Error, Result};
 use crate::math::{Aabb, Vertex};
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec3, Vec3A};
+pub use load::{load, load_in};
 pub use options::{MAX_SEGMENTS, Options, Up};
 pub use procedural::{Parameter, SceneInfo, list};
 use std::path::Path;
@@ -27,7 +34,14 @@ pub const MAX_ELEMENTS: usize = 1 << 27;
 pub type Reader = fn(&Path, &Options) -> Result<Scene>;
 
 /// Readers by file extension (lower case).
-pub const FORMATS: &[(&str, Reader)] = &[("ply", |path, _| ply::read(path))];
+pub const FORMATS: &[(&str, Reader)] = &[
+    ("ply", |path, _| ply::read(path)),
+    ("obj", obj::read),
+    ("gltf", gltf::read),
+    ("glb", gltf::read),
+    // The cache of any of them
+    (cache::EXTENSION, cache::read),
+];
 
 /// One triangle: three vertices and a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
@@ -174,18 +188,25 @@ impl Scene {
             }
         }
         let (vertices, materials) = (self.vertices.len() as u32, self.materials.len() as u32);
-        if let Some(i) = self.triangles.iter().position(|t| t.vertices.iter().any(|&v| v >= vertices)) {
+        // Passes without branches first: files are sound almost always, and this is a good part of loading a cache.
+        let ((vertex, material), (sound, all)) = rayon::join(|| self.largest_indices(), || self.vertex_extent());
+        if vertex >= vertices
+            && let Some(i) = self.triangles.iter().position(|t| t.vertices.iter().any(|&v| v >= vertices))
+        {
             let problem = format!("triangle {i} uses a vertex beyond the {vertices} that there are");
             return Some((problem, "repair the triangle's indices"));
         }
-        if let Some(i) = self.triangles.iter().position(|t| t.material >= materials) {
+        if material >= materials
+            && let Some(i) = self.triangles.iter().position(|t| t.material >= materials)
+        {
             let problem = format!("triangle {i} uses a material beyond the {materials} that there are");
             return Some((problem, "repair the triangle's material"));
         }
-        if let Some(i) = self.vertices.iter().position(|v| !v.position.is_finite() || !v.normal.is_finite()) {
+        if !sound && let Some(i) = self.vertices.iter().position(|v| !v.position.is_finite() || !v.normal.is_finite()) {
             return Some((format!("vertex {i} is not finite"), "remove it or repair the export"));
         }
-        if !self.bounds().diagonal().is_finite() {
+        // Vertices that no triangle uses may lie anywhere: only then it takes the way by the triangles.
+        if !all.diagonal().is_finite() && !self.bounds().diagonal().is_finite() {
             return Some(("the scene is too large: its diagonal is not finite".into(), "scale it down"));
         }
         let colours = |m: &Material| [m.ambient, m.diffuse, m.specular];
@@ -203,6 +224,25 @@ impl Scene {
             return Some((format!("light {i} is not finite"), "give it a finite position and colour"));
         }
         None
+    }
+
+    /// The largest vertex index and the largest material index of all triangles.
+    fn largest_indices(&self) -> (u32, u32) {
+        self.triangles.iter().fold((0, 0), |(vertex, material), triangle| {
+            let [a, b, c] = triangle.vertices;
+            (vertex.max(a).max(b).max(c), material.max(triangle.material))
+        })
+    }
+
+    /// Whether all positions and normals are finite, and the box around all positions.
+    fn vertex_extent(&self) -> (bool, Aabb) {
+        let (mut sum, mut all) = (Vec3::ZERO, Aabb::EMPTY);
+        for vertex in &self.vertices {
+            // Zero, unless something is infinite or NaN
+            sum += vertex.position * 0.0 + vertex.normal * 0.0;
+            all = Aabb { min: all.min.min(vertex.position), max: all.max.max(vertex.position) };
+        }
+        (sum == Vec3::ZERO, all)
     }
 
     /// BLAKE3 of all that decides what is traced and shaded, hexadecimal: vertices, triangles, materials, lights and
@@ -258,66 +298,19 @@ impl Scene {
         }
     }
 
-    /// Gives what a reader may leave open (a material, the number of degenerate triangles) and checks the rest; a fault
-    /// comes back as problem and mend.
+    /// Gives a material where there is none, and checks the rest; a fault comes back as problem and mend.
     fn complete(&mut self) -> Result<(), (String, &'static str)> {
         if self.materials.is_empty() {
             self.materials.push(Material::neutral());
         }
-        self.first_fault().map_or(Ok(()), Err)?;
+        self.first_fault().map_or(Ok(()), Err)
+    }
+
+    /// Counts the triangles without area of a scene that has been checked.
+    fn count_degenerate(&mut self) {
         let vertices = &self.vertices;
         let degenerate = |t: &&Triangle| normals::is_degenerate(t.vertices.map(|v| vertices[v as usize].position));
         self.degenerate_triangles = self.triangles.iter().filter(degenerate).count();
-        Ok(())
-    }
-}
-
-/// Loads a scene: a file by its extension, or a procedural scene, either as `name[:key=value,...]` (see [`Options`] for
-/// the keys of files).
-///
-/// `what` is a file if one of that name exists, or if it contains a path separator or ends in a known extension.
-///
-/// # Errors
-/// [`Error::Input`] for whatever is wrong with the name, the parameters or the file.
-pub fn load(what: &str) -> Result<Scene> {
-    let (name, settings) = split_settings(what);
-    let path = Path::new(name);
-    let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
-    let reader = FORMATS.iter().find(|(known, _)| Some(*known) == extension.as_deref()).map(|(_, reader)| reader);
-    let is_file = reader.is_some() || name.contains(['/', std::path::MAIN_SEPARATOR]) || path.exists();
-    if !is_file {
-        let mut scene = procedural::build(what)?;
-        scene.complete().map_err(|(problem, mend)| Error::argument(what, problem, mend))?;
-        return Ok(scene);
-    }
-    let Some(reader) = reader else {
-        if !path.exists() {
-            return Err(Error::file(path, None, "no such file", "check the path"));
-        }
-        let known: Vec<&str> = FORMATS.iter().map(|(extension, _)| *extension).collect();
-        return Err(Error::file(
-            path,
-            None,
-            "the format is unknown: formats are told by the file's extension",
-            format!("known extensions: {}", known.join(", ")),
-        ));
-    };
-    let options = Options::parse(what, settings)?;
-    let mut scene = reader(path, &options)?;
-    scene.transform(options.up, options.scale);
-    if scene.name.is_empty() {
-        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        scene.name = format!("{stem}{}", options.suffix());
-    }
-    scene.complete().map_err(|(problem, mend)| Error::file(path, None, problem, mend))?;
-    Ok(scene)
-}
-
-/// Name or path, and what follows its last colon if that is `key=value,...`; a file may have a colon in its name.
-fn split_settings(what: &str) -> (&str, &str) {
-    match what.rsplit_once(':') {
-        Some((name, settings)) if settings.contains('=') && !Path::new(what).exists() => (name, settings),
-        _ => (what, ""),
     }
 }
 

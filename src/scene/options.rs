@@ -16,6 +16,8 @@ pub struct Options {
     pub up: Up,
     /// Factor on all lengths, applied last.
     pub scale: f32,
+    /// OBJ: the material that shines although the file does not say so (exporters lose it); its faces become lights.
+    pub lamp: Option<String>,
 }
 
 /// An axis that points up.
@@ -30,7 +32,7 @@ pub enum Up {
 
 impl Default for Options {
     fn default() -> Options {
-        Options { time: None, segments: None, outside: false, up: Up::Y, scale: 1.0 }
+        Options { time: None, segments: None, outside: false, up: Up::Y, scale: 1.0, lamp: None }
     }
 }
 
@@ -39,7 +41,7 @@ pub const MAX_SEGMENTS: u32 = 1024;
 
 impl Options {
     /// The names of all options.
-    pub const KEYS: [&str; 5] = ["time", "segments", "outside", "up", "scale"];
+    pub const KEYS: [&str; 6] = ["time", "segments", "outside", "up", "scale", "lamp"];
 
     /// Reads `key=value,...`; `what` stands in errors.
     ///
@@ -72,6 +74,10 @@ impl Options {
                     Ok(scale) if (1e-20..=1e20).contains(&scale) => options.scale = scale,
                     _ => return Err(wrong("give a positive number")),
                 },
+                "lamp" => match value {
+                    "" => return Err(wrong("give the name of a material")),
+                    name => options.lamp = Some(name.to_owned()),
+                },
                 _ => {
                     let problem = format!("scene files have no option `{key}`");
                     return Err(Error::argument(what, problem, did_you_mean(key, &Self::KEYS)));
@@ -98,6 +104,9 @@ impl Options {
         }
         if self.scale != 1.0 {
             set.push(format!("scale={}", self.scale));
+        }
+        if let Some(lamp) = &self.lamp {
+            set.push(format!("lamp={lamp}"));
         }
         if set.is_empty() { String::new() } else { format!(":{}", set.join(",")) }
     }

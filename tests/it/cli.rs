@@ -123,6 +123,7 @@ fn each_mistake_is_one_clear_error() {
         (format!("--scene {infinite}"), vec!["infinite.ply"]),
         (format!("--scene {empty}"), vec!["empty.ply"]),
         ("--scene nosuchscene".into(), vec!["nosuchscene"]),
+        ("--scene bunny".into(), vec!["bunny", "RTBENCH_SCENES", "scenes fetch bunny"]),
         ("--resolution 0".into(), vec!["--resolution", "no pixels"]),
         ("--resolution 12x0".into(), vec!["--resolution", "no pixels"]),
         ("--resolution 100000x100000".into(), vec!["--resolution", "pixels"]),
@@ -358,6 +359,37 @@ fn structures_alone() {
 }
 
 #[test]
+fn the_catalogue_is_listed_and_scenes_are_converted() {
+    let text = good("scenes list");
+    for words in
+        ["  bunny *", "not here: `rtbench scenes fetch bunny`", "put it as bart/robots/Robot.aff", "RTBENCH_SCENES"]
+    {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().display();
+    std::fs::create_dir(folder.path().join("sponza")).unwrap();
+    std::fs::write(folder.path().join("sponza/sponza.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let text = good(&format!("scenes list --scenes-dir {place}"));
+    assert!(text.contains(&format!("here: {place}/sponza/sponza.obj")), "{text}");
+    let text = good(&format!("scenes info sponza --scenes-dir {place}"));
+    assert!(text.contains("1 (the catalogue expects 66450)") && text.contains("licence"), "{text}");
+    assert!(good(&format!("build --scene sponza --structure bvh --scenes-dir {place}")).contains("sponza"));
+    good(&format!("scenes convert sponza {place}/s.rtb --scenes-dir {place}"));
+    let info = |what: &str| good(&format!("scenes info {what}"));
+    assert!(info(&format!("{place}/s.rtb")).starts_with("sponza\n"));
+    good(&format!("scenes convert hall {place}/hall.rtb"));
+    let hash = |text: String| text.lines().find(|l| l.contains("content hash")).unwrap().to_owned();
+    assert_eq!(hash(info(&format!("{place}/hall.rtb"))), hash(info("hall")));
+    one_error(&run(&format!("scenes convert hall {place}/hall.ply")), &["does not end in .rtb"]);
+    one_error(&run("scenes fetch bunny"), &["--scenes-dir"]);
+    one_error(&run(&format!("scenes fetch buny --scenes-dir {place}")), &["did you mean bunny?"]);
+    one_error(&run(&format!("scenes fetch kitchen --scenes-dir {place}")), &["no official address", "BART"]);
+    // What is here is not fetched again.
+    assert!(good(&format!("scenes fetch sponza --scenes-dir {place}")).contains("is here"));
+}
+
+#[test]
 fn lists_and_help() {
     for name in ["grid", "kdtree", "bvh", "bvh-stack", "ploc-stack", "brute"] {
         assert!(good("structures").lines().any(|line| line.trim() == name), "{name}");
@@ -365,7 +397,8 @@ fn lists_and_help() {
     for name in ["scan", "terrain", "sphereflake", "stadium", "hall", "room"] {
         assert!(good("scenes list").lines().any(|line| line.trim() == name), "{name}");
     }
-    assert!(good("scenes info scan:triangles=1000").contains("content hash"));
+    let text = good("scenes info scan:triangles=1000");
+    assert!(text.contains("content hash") && text.contains("kdtree, estimated"), "{text}");
     assert!(good("devices").contains("--backend cpu"));
     assert!(good("completions bash").contains("rtbench"));
     assert!(good("--version").contains("revision"));

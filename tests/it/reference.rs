@@ -7,9 +7,8 @@ use glam::Vec3;
 use rtbench::accel::{Selection, variants};
 use rtbench::backend::{Backend, GivenRay};
 use rtbench::cpu::CpuBackend;
-use rtbench::math::Vertex;
 use rtbench::math::{Hit, MISS};
-use rtbench::scene::{self, Material, Scene, Triangle};
+use rtbench::scene::{self, Scene};
 use std::path::Path;
 
 fn read_rays(path: &Path) -> (Vec<GivenRay>, Vec<Hit>) {
@@ -45,31 +44,12 @@ fn differing(scene: &Scene, expected: &[Hit], found: &[Hit]) -> Vec<usize> {
         .collect()
 }
 
-/// An OBJ file as a plain mesh: polygons as fans, in file order.
-fn load_obj(path: &Path) -> Scene {
-    let options = tobj::LoadOptions { triangulate: true, ..Default::default() };
-    let (models, _) = tobj::load_obj(path, &options).unwrap();
-    let mut scene = Scene { name: "obj".into(), materials: vec![Material::matt(Vec3::ONE)], ..Scene::default() };
-    for mesh in models.iter().map(|model| &model.mesh) {
-        let first = scene.vertices.len() as u32;
-        scene.vertices.extend(mesh.positions.chunks_exact(3).map(|p| Vertex::new(Vec3::from_slice(p), Vec3::ZERO)));
-        let triangles = mesh.indices.chunks_exact(3);
-        scene
-            .triangles
-            .extend(triangles.map(|i| Triangle { vertices: [first + i[0], first + i[1], first + i[2]], material: 0 }));
-    }
-    scene
-}
-
 fn agree(scene_file: &str, rays_file: &str) {
     let Some(scene_file) = file_below("RTBENCH_SCENES", scene_file) else { return };
     let variable = if std::env::var_os("RTBENCH_REFERENCE").is_some() { "RTBENCH_REFERENCE" } else { "RTBENCH_SCENES" };
     let beside = if variable == "RTBENCH_SCENES" { "../reference/" } else { "" };
     let Some(rays_file) = file_below(variable, &format!("{beside}{rays_file}")) else { return };
-    let scene = match scene_file.extension().is_some_and(|extension| extension == "obj") {
-        true => load_obj(&scene_file),
-        false => scene::load(scene_file.to_str().unwrap()).unwrap(),
-    };
+    let scene = scene::load(scene_file.to_str().unwrap()).unwrap();
     let (rays, expected) = read_rays(&rays_file);
     assert_eq!(rays.len(), 6000);
     assert!(

@@ -2,6 +2,11 @@
 
 mod broken_ply;
 mod built_in;
+mod cache;
+mod catalogue;
+mod fetch;
+mod gltf;
+mod obj;
 mod ply;
 
 use rtbench::scene::{self, Scene};
@@ -38,7 +43,8 @@ fn refusal(result: Result<Scene>) -> String {
 fn names_that_are_neither_file_nor_scene_are_refused_with_a_mend() {
     for (what, words) in [
         ("hal", &["did you mean hall?", "sphereflake"][..]),
-        ("kitchen", &["no built-in scene", "terrain"]),
+        ("cathedral", &["no scene is called", "terrain", "dragon"]),
+        ("kitchen", &["no folder of scenes is given", "RTBENCH_SCENES", "kitchen.aff", "BART"]),
         ("no/such/mesh.ply", &["no/such/mesh.ply: no such file"]),
         ("mesh.PLY", &["mesh.PLY: no such file"]),
         ("no/such/mesh", &["no such file"]),
@@ -49,7 +55,7 @@ fn names_that_are_neither_file_nor_scene_are_refused_with_a_mend() {
         ("hall:triangles=7", &["out of range", "15000"]),
         ("hall:triangles=99999999999999", &["out of range"]),
         ("hall:triangles=99999999999999999999999999", &["not a whole number"]),
-        ("", &["no built-in scene"]),
+        ("", &["no scene is called"]),
     ] {
         let message = refusal(scene::load(what));
         for word in words {

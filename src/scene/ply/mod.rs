@@ -11,7 +11,7 @@
 
 mod body;
 mod header;
-mod number;
+pub(super) mod number;
 mod source;
 
 use super::{Scene, normals};

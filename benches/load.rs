@@ -1,0 +1,100 @@
+//! How fast scenes are read: `cargo bench --bench load`; RTBENCH_SCENES names the folder with the catalogue's scenes.
+//!
+//! For every format the largest file of the catalogue that is here: megabytes per second on one core. Then the bar of the
+//! cache: the same scene from its source and from its `.rtb`, in turns, and the ratio of the medians.
+
+mod common;
+
+use common::{median, sign_test_interval};
+use rtbench::scene::cache::{self, Source};
+use rtbench::scene::{FORMATS, Options, catalogue, load};
+use std::collections::BTreeMap;
+use std::hint::black_box;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+fn main() {
+    let scratch = std::env::temp_dir().join(format!("rtbench-load-{}", std::process::id()));
+    std::fs::create_dir_all(&scratch).expect("a folder for caches");
+    if !common::measuring() {
+        println!("only a test that this runs: use cargo bench --bench load");
+        let scan = scratch.join("scan.rtb");
+        let scene = common::scan(1000);
+        cache::write(&scene, &Source::default(), &scan).expect("written");
+        interleaved("scan", &[("cache", &scan)], 3);
+    } else {
+        let files = files();
+        println!("{:<12} {:>9} {:>22}  file", "format", "MB", "MB/s (95 % of rounds)");
+        for (extension, path) in &files {
+            throughput(extension, path);
+        }
+        for (extension, path) in &files {
+            let cached = scratch.join(format!("{extension}.rtb"));
+            let what = path.to_str().expect("a printable path");
+            let source = Source::of(what, None).expect("readable");
+            cache::write(&load(what).expect("loads"), &source, &cached).expect("written");
+            interleaved(what, &[("source", path), ("cache", &cached)], 11);
+        }
+    }
+    std::fs::remove_dir_all(&scratch).expect("removed");
+}
+
+/// The largest file of each format; a folder of OBJ files counts by its largest.
+fn files() -> BTreeMap<String, PathBuf> {
+    let mut largest: BTreeMap<String, (u64, PathBuf)> = BTreeMap::new();
+    let Some(folder) = std::env::var_os("RTBENCH_SCENES").map(PathBuf::from) else {
+        eprintln!("nothing to measure: RTBENCH_SCENES is not set");
+        return BTreeMap::new();
+    };
+    for path in catalogue::entries().iter().filter_map(|entry| catalogue::locate(entry, &folder)) {
+        let inner = std::fs::read_dir(&path).into_iter().flatten().flatten().map(|entry| entry.path());
+        for file in inner.chain([path.clone()]).filter(|file| file.is_file()) {
+            let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+            let bytes = file.metadata().map_or(0, |m| m.len());
+            if largest.get(&extension).is_none_or(|(most, _)| bytes > *most) {
+                largest.insert(extension, (bytes, file));
+            }
+        }
+    }
+    let known = |extension: &String| FORMATS.iter().any(|(name, _)| name == extension);
+    largest.into_iter().filter(|(extension, _)| known(extension)).map(|(name, (_, path))| (name, path)).collect()
+}
+
+/// The reader alone, on one thread.
+fn throughput(extension: &str, path: &Path) {
+    let (_, reader) = FORMATS.iter().find(|(name, _)| *name == extension).expect("a known format");
+    let megabytes = path.metadata().expect("is here").len() as f64 / 1e6;
+    let options = Options::default();
+    let rate = |_| {
+        let start = Instant::now();
+        black_box(reader(path, &options).expect("reads"));
+        megabytes / start.elapsed().as_secs_f64()
+    };
+    let rates: Vec<f64> = common::pool(1).install(|| (0..15).map(rate).collect());
+    let (low, high) = sign_test_interval(&rates);
+    println!("{extension:<12} {megabytes:>9.2} {:>8.0} ({low:.0} to {high:.0})  {}", median(&rates), path.display());
+}
+
+/// Loads each in turns, in an order that turns round every other time, and compares with the first.
+fn interleaved(name: &str, contestants: &[(&str, &Path)], rounds: usize) {
+    let mut times = vec![Vec::new(); contestants.len()];
+    for round in 0..rounds {
+        let mut order: Vec<usize> = (0..contestants.len()).collect();
+        if round % 2 == 1 {
+            order.reverse();
+        }
+        for i in order {
+            let what = contestants[i].1.to_str().expect("a printable path");
+            let start = Instant::now();
+            black_box(load(what).expect("loads"));
+            times[i].push(start.elapsed().as_secs_f64() * 1e3);
+        }
+    }
+    println!("{name}");
+    for (i, (contestant, _)) in contestants.iter().enumerate() {
+        let ratios: Vec<f64> = times[0].iter().zip(&times[i]).map(|(first, this)| first / this).collect();
+        let (low, high) = sign_test_interval(&ratios);
+        let ratio = format!("{:.1} times as fast ({low:.1} to {high:.1})", median(&ratios));
+        println!("    {contestant:<8} {:>8.2} ms  {ratio}", median(&times[i]));
+    }
+}

@@ -1,0 +1,81 @@
+//! `rtbench scenes info`.
+
+use super::super::library::LibraryArguments;
+use super::super::output;
+use crate::accel::estimate;
+use crate::backend::Config;
+use crate::camera::CameraPath;
+use crate::error::Result;
+use crate::scene::catalogue::{self, Class};
+use crate::scene::{Scene, load_in};
+
+/// Loads a scene and prints what it is like.
+pub fn run(what: &str, library: &LibraryArguments) -> Result<()> {
+    let scene = load_in(what, library.folder().as_deref())?;
+    let entry = catalogue::find(what.split(':').next().unwrap_or(what));
+    let mut text = format!("{}\n", scene.name);
+    let mut line = |name: &str, value: String| text += &format!("  {name:<22}{value}\n");
+    let beside = |count: usize, expected: Option<usize>| match expected {
+        Some(expected) if expected == count => format!("{count} (as the catalogue expects)"),
+        Some(expected) => format!("{count} (the catalogue expects {expected})"),
+        None => count.to_string(),
+    };
+    line("triangles", beside(scene.triangles.len(), entry.map(|e| e.triangles)));
+    line("without area", scene.degenerate_triangles.to_string());
+    line("vertices", beside(scene.vertices.len(), entry.and_then(|e| e.vertices)));
+    line("materials", scene.materials.len().to_string());
+    line("mirroring surface", format!("{:.1} %", 100.0 * scene.mirror_share()));
+    line("lights", lights(&scene, entry));
+    let bounds = scene.bounds();
+    line("smallest corner", bounds.min.to_string());
+    line("largest corner", bounds.max.to_string());
+    line("extent", format!("{}, diagonal {}", bounds.extent(), bounds.diagonal()));
+    line("camera of the file", camera(&scene));
+    for config in Config::ALL {
+        line(&format!("camera path for {config:?}"), CameraPath::for_scene(&scene, config).name);
+    }
+    if let Some(entry) = entry {
+        let class = match entry.class {
+            Class::Object => "an object to turn around",
+            Class::Walk => "a place to walk through",
+        };
+        line("class", class.to_owned());
+        line("grid of the thesis", entry.grid.clone().unwrap_or_else(|| "by the rule".to_owned()));
+        line("source", entry.source.clone());
+        line("licence", entry.licence.clone());
+        line("credit", entry.credit.clone());
+    }
+    for estimate in estimate::estimates(&scene) {
+        let mib = |bytes: u64| format!("{:.2} MiB", bytes as f64 / f64::from(1 << 20));
+        let (device, thesis) = (mib(estimate.structure_bytes), mib(estimate.thesis_bytes));
+        let name = format!("{}, estimated", estimate.structure);
+        line(&name, format!("{device} beside the vertices; {thesis} as the thesis counts"));
+    }
+    line("content hash", scene.content_hash());
+    for warning in &scene.warnings {
+        line("warning", warning.clone());
+    }
+    output::print(&text)
+}
+
+fn lights(scene: &Scene, entry: Option<&catalogue::Entry>) -> String {
+    let own = match scene.lights.len() {
+        0 => "none: the camera path brings its own".to_owned(),
+        n => n.to_string(),
+    };
+    match entry.and_then(|e| e.lights) {
+        Some(expected) if expected != scene.lights.len() => format!("{own} (the thesis has {expected})"),
+        _ => own,
+    }
+}
+
+fn camera(scene: &Scene) -> String {
+    match &scene.camera {
+        None => "none".to_owned(),
+        Some(camera) => match camera.frames.as_slice() {
+            [] => "none".to_owned(),
+            [pose] => format!("at {}, {} degrees", pose.position, camera.field_of_view),
+            frames => format!("{} frames, {} degrees", frames.len(), camera.field_of_view),
+        },
+    }
+}

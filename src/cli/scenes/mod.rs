@@ -1,0 +1,84 @@
+//! `rtbench scenes`: what can be traced.
+
+mod fetch;
+mod info;
+mod list;
+
+use super::library::LibraryArguments;
+use super::output;
+use crate::error::{Error, Result};
+use crate::scene::cache;
+use clap::Subcommand;
+use std::path::PathBuf;
+
+/// List, describe, convert and fetch scenes
+#[derive(Subcommand, Debug)]
+#[command(after_help = EXAMPLES)]
+pub enum Command {
+    /// List the built-in scenes, the catalogue's (present or where to get them), and the camera paths
+    List {
+        #[command(flatten)]
+        library: LibraryArguments,
+    },
+    /// Load a scene and describe it
+    Info {
+        /// Scene file, or name of a scene with options
+        #[arg(value_name = "FILE|NAME[:KEY=VALUE,..]")]
+        scene: String,
+        #[command(flatten)]
+        library: LibraryArguments,
+    },
+    /// Write a scene as loaded into a binary cache that loads at once
+    Convert {
+        /// Scene file, or name of a scene with options
+        #[arg(value_name = "FILE|NAME[:KEY=VALUE,..]")]
+        scene: String,
+        /// The cache, FILE.rtb
+        #[arg(value_name = "OUT.rtb")]
+        out: PathBuf,
+        #[command(flatten)]
+        library: LibraryArguments,
+    },
+    /// Download a scene of the catalogue from its official source, checked, into the folder of scenes
+    Fetch {
+        /// A scene of the catalogue
+        #[arg(value_name = "NAME")]
+        scene: String,
+        #[command(flatten)]
+        library: LibraryArguments,
+    },
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  rtbench scenes list --scenes-dir ~/scenes
+  rtbench scenes info bunny.ply
+  rtbench scenes info hall:triangles=200000
+  rtbench scenes convert dragon_vrip.ply dragon.rtb
+  rtbench scenes fetch bunny --scenes-dir ~/scenes
+      what was begun is continued; nothing is overwritten";
+
+/// Runs the command.
+///
+/// # Errors
+/// The scene's, or the output's.
+pub fn run(command: &Command) -> Result<()> {
+    match command {
+        Command::List { library } => list::run(library),
+        Command::Info { scene, library } => info::run(scene, library),
+        Command::Fetch { scene, library } => fetch::run(scene, library),
+        Command::Convert { scene, out, library } => convert(scene, out, library),
+    }
+}
+
+fn convert(what: &str, out: &std::path::Path, library: &LibraryArguments) -> Result<()> {
+    if out.extension().is_none_or(|e| !e.eq_ignore_ascii_case(cache::EXTENSION)) {
+        let problem = "the cache's name does not end in .rtb";
+        return Err(Error::argument(out.display().to_string(), problem, "formats are told by the file's extension"));
+    }
+    let source = cache::Source::of(what, library.folder().as_deref())?;
+    let scene = library.load(what)?;
+    cache::write(&scene, &source, out)?;
+    let (triangles, vertices) = (scene.triangles.len(), scene.vertices.len());
+    output::print(&format!("{}: {}, {triangles} triangles, {vertices} vertices\n", out.display(), scene.name))
+}

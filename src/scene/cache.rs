@@ -1,0 +1,345 @@
+//! `.rtb`: a scene as loaded, in one binary file that is read in one go.
+//!
+//! A header of fixed size, then vertices, triangles, materials, lights and the camera's poses as they lie in memory, then
+//! the texts as JSON. All numbers are little-endian. A BLAKE3 checksum covers all of it.
+//!
+//! A cache is refused, never repaired. It is *foreign* without the magic bytes, *truncated* or *corrupt* where lengths or
+//! the checksum do not fit, and **stale** where loading the source again might give another scene:
+//! - the layout has another version ([`FORMAT`]);
+//! - it was written by a program with other readers: `build.rs` hashes their source, so nobody has to remember to raise a
+//!   number;
+//! - a file with the source's name lies beside it, and is not what the cache was made from. That file is hashed only if
+//!   its length differs or it was modified after the cache; of scenes with includes only the file that was named counts.
+
+use super::{Light, MAX_ELEMENTS, Material, Options, Pose, Scene, SceneCamera, Triangle, load};
+use crate::error::{Error, Result};
+use crate::math::Vertex;
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::fs::File;
+use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+/// The extension of caches.
+pub const EXTENSION: &str = "rtb";
+
+/// Version of the layout.
+pub const FORMAT: u32 = 1;
+
+const MAGIC: [u8; 8] = *b"RTBSCENE";
+
+/// A hash of the readers' source, from `build.rs`.
+const READERS: &str = env!("RTBENCH_READERS");
+
+/// Most bytes of texts: names and warnings.
+const MAX_TEXT: u64 = 1 << 24;
+
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct Header {
+    magic: [u8; 8],
+    format: u32,
+    /// Vertical, degrees; of no meaning without poses.
+    field_of_view: f32,
+    /// The hash of the readers' source, as text.
+    readers: [u8; 16],
+    /// BLAKE3 of this header, with zeros here, and of the BLAKE3 of every piece of every part.
+    checksum: [u8; 32],
+    /// BLAKE3 of the source's bytes, zero if there is no file behind the scene.
+    source: [u8; 32],
+    source_bytes: u64,
+    vertices: u64,
+    triangles: u64,
+    materials: u64,
+    lights: u64,
+    poses: u64,
+    text: u64,
+    background: [f32; 3],
+    pad: u32,
+    degenerate: u64,
+}
+
+/// A pose, with everything in double precision.
+type RawPose = [f64; 10];
+
+/// The texts of a scene.
+#[derive(Serialize, Deserialize)]
+struct Texts {
+    name: String,
+    camera_path: Option<String>,
+    warnings: Vec<String>,
+    /// Name of the source file or folder, without its path.
+    source: String,
+}
+
+/// What a cache is made from.
+#[derive(Clone, Debug, Default)]
+pub struct Source {
+    name: String,
+    files: Vec<PathBuf>,
+}
+
+impl Source {
+    /// The files behind a scene that was loaded as `what` (see [`super::load_in`]); none for a built-in scene.
+    ///
+    /// # Errors
+    /// [`Error::Input`] if a folder cannot be read.
+    pub fn of(what: &str, folder: Option<&Path>) -> Result<Source> {
+        match load::file_behind(what, folder)? {
+            Some(name) => Source::at(Path::new(&name)),
+            None => Ok(Source::default()),
+        }
+    }
+
+    fn at(path: &Path) -> Result<Source> {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        Ok(Source { name, files: load::parts(&path.to_string_lossy())? })
+    }
+
+    /// Length and BLAKE3 of all files.
+    fn hash(&self) -> Result<(u64, [u8; 32])> {
+        let mut hasher = blake3::Hasher::new();
+        let mut bytes = 0;
+        for path in &self.files {
+            let content = super::read_file(path)?;
+            bytes += content.len() as u64;
+            hasher.update(&(content.len() as u64).to_le_bytes());
+            hasher.update(&content);
+        }
+        Ok((bytes, if self.files.is_empty() { [0; 32] } else { *hasher.finalize().as_bytes() }))
+    }
+
+    /// True if a look at lengths and times suffices: as long as it was, and not modified after `cache` was.
+    fn untouched(&self, bytes: u64, cache: &std::fs::Metadata) -> bool {
+        let metadata: Vec<_> = self.files.iter().filter_map(|file| std::fs::metadata(file).ok()).collect();
+        let older = |m: &std::fs::Metadata| matches!((m.modified(), cache.modified()), (Ok(a), Ok(b)) if a <= b);
+        metadata.len() == self.files.len()
+            && metadata.iter().map(std::fs::Metadata::len).sum::<u64>() == bytes
+            && metadata.iter().all(older)
+    }
+}
+
+/// Writes a scene and what it came from. The file is there as a whole or not at all.
+///
+/// # Errors
+/// [`Error::Input`] if the source cannot be read, [`Error::Output`] if the cache cannot be written.
+pub fn write(scene: &Scene, source: &Source, path: &Path) -> Result<()> {
+    let (source_bytes, source_hash) = source.hash()?;
+    let texts = Texts {
+        name: scene.name.clone(),
+        camera_path: scene.camera_path.clone(),
+        warnings: scene.warnings.clone(),
+        source: source.name.clone(),
+    };
+    let text = serde_json::to_vec(&texts).map_err(|e| Error::output(path, e.into()))?;
+    let poses: Vec<RawPose> = scene.camera.iter().flat_map(|camera| &camera.frames).map(raw_pose).collect();
+    let mut header = Header {
+        magic: MAGIC,
+        format: FORMAT,
+        field_of_view: scene.camera.as_ref().map_or(0.0, |camera| camera.field_of_view),
+        readers: readers(),
+        checksum: [0; 32],
+        source: source_hash,
+        source_bytes,
+        vertices: scene.vertices.len() as u64,
+        triangles: scene.triangles.len() as u64,
+        materials: scene.materials.len() as u64,
+        lights: scene.lights.len() as u64,
+        poses: poses.len() as u64,
+        text: text.len() as u64,
+        background: scene.background.to_array(),
+        pad: 0,
+        degenerate: scene.degenerate_triangles as u64,
+    };
+    let parts: [&[u8]; 6] = [
+        bytemuck::cast_slice(&scene.vertices),
+        bytemuck::cast_slice(&scene.triangles),
+        bytemuck::cast_slice(&scene.materials),
+        bytemuck::cast_slice(&scene.lights),
+        bytemuck::cast_slice(&poses),
+        &text,
+    ];
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(bytemuck::bytes_of(&header));
+    for part in parts {
+        part.chunks(PIECE).for_each(|piece| add(&mut hasher, &blake3::hash(piece)));
+    }
+    header.checksum = *hasher.finalize().as_bytes();
+
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(format!(".{}.part", std::process::id()));
+    let part = path.with_file_name(name);
+    let written = (|| {
+        let mut file = File::create(&part)?;
+        file.write_all(bytemuck::bytes_of(&header))?;
+        parts.iter().try_for_each(|bytes| file.write_all(bytes))?;
+        file.sync_all()?;
+        std::fs::rename(&part, path)
+    })();
+    written.map_err(|e| {
+        // What was begun is of no use; that it could not be removed either says nothing new.
+        let _ = std::fs::remove_file(&part);
+        Error::output(path, e)
+    })
+}
+
+/// Reads a cache.
+///
+/// # Errors
+/// [`Error::Input`]: no cache, or one that is stale, truncated or corrupt.
+pub fn read(path: &Path, _: &Options) -> Result<Scene> {
+    let fault = |problem: &str, mend: &str| Error::file(path, None, problem, mend);
+    let again = "make it again with `rtbench scenes convert`";
+    let unreadable = |e: std::io::Error| match e.kind() {
+        ErrorKind::NotFound => fault("no such file", "check the path"),
+        ErrorKind::UnexpectedEof => fault("the cache is truncated", again),
+        _ => fault(&format!("cannot be read: {e}"), "check the path and its permissions"),
+    };
+    let mut file = File::open(path).map_err(unreadable)?;
+    let metadata = file.metadata().map_err(unreadable)?;
+    if !metadata.is_file() {
+        return Err(fault("not a regular file", "name a file that holds a scene"));
+    }
+    let mut header = Header::zeroed();
+    let start = &mut bytemuck::bytes_of_mut(&mut header)[..metadata.len().min(size_of::<Header>() as u64) as usize];
+    file.read_exact(start).map_err(unreadable)?;
+    let known = start.len().min(MAGIC.len());
+    if start[..known] != MAGIC[..known] || known == 0 {
+        return Err(fault("this is not a cache of rtbench", "name a file that `rtbench scenes convert` has written"));
+    }
+    if metadata.len() < size_of::<Header>() as u64 {
+        return Err(fault("the cache is truncated", again));
+    }
+    if header.format != FORMAT {
+        let problem = format!("the cache is stale: its layout has version {}, not {FORMAT}", header.format);
+        return Err(fault(&problem, again));
+    }
+    if header.readers != readers() {
+        return Err(fault("the cache is stale: it was made by another version of rtbench's readers", again));
+    }
+    // Lengths are held against the file before anything is allocated from them.
+    match header.total() {
+        None => return Err(fault("the cache is corrupt: its header asks for more than a scene may have", again)),
+        Some(total) if total > metadata.len() => return Err(fault("the cache is truncated", again)),
+        Some(total) if total < metadata.len() => {
+            return Err(fault("the cache is corrupt: there are bytes behind its end", again));
+        }
+        Some(_) => {}
+    }
+    let mut parts = Parts { path, at: size_of::<Header>() as u64, hasher: blake3::Hasher::new() };
+    parts.hasher.update(bytemuck::bytes_of(&Header { checksum: [0; 32], ..header }));
+    let vertices: Vec<Vertex> = parts.next(header.vertices).map_err(unreadable)?;
+    let triangles: Vec<Triangle> = parts.next(header.triangles).map_err(unreadable)?;
+    let materials: Vec<Material> = parts.next(header.materials).map_err(unreadable)?;
+    let lights: Vec<Light> = parts.next(header.lights).map_err(unreadable)?;
+    let poses: Vec<RawPose> = parts.next(header.poses).map_err(unreadable)?;
+    let text: Vec<u8> = parts.next(header.text).map_err(unreadable)?;
+    if *parts.hasher.finalize().as_bytes() != header.checksum {
+        return Err(fault("the cache is corrupt: its checksum is wrong", again));
+    }
+    let texts: Texts =
+        serde_json::from_slice(&text).map_err(|_| fault("the cache is corrupt: its texts cannot be read", again))?;
+    check_source(path, &texts.source, &header, &metadata)?;
+    let field_of_view = header.field_of_view;
+    let frames: Vec<Pose> = poses.iter().map(pose).collect();
+    Ok(Scene {
+        name: texts.name,
+        vertices,
+        triangles,
+        materials,
+        lights,
+        background: Vec3::from(header.background),
+        camera_path: texts.camera_path,
+        camera: (!frames.is_empty()).then_some(SceneCamera { field_of_view, frames }),
+        degenerate_triangles: header.degenerate as usize,
+        warnings: texts.warnings,
+    })
+}
+
+/// Refuses a cache beside which a source lies that is no longer the one it was made from.
+fn check_source(path: &Path, name: &str, header: &Header, metadata: &std::fs::Metadata) -> Result<()> {
+    // A name only: a cache must not make its reader look anywhere else.
+    let beside = path.with_file_name(name);
+    if name.is_empty() || Path::new(name).file_name() != Some(name.as_ref()) || !beside.exists() {
+        return Ok(());
+    }
+    let source = Source::at(&beside)?;
+    if source.untouched(header.source_bytes, metadata) || source.hash()?.1 == header.source {
+        return Ok(());
+    }
+    let problem = format!("the cache is stale: {} beside it has changed", beside.display());
+    Err(Error::file(path, None, problem, "make it again with `rtbench scenes convert`"))
+}
+
+impl Header {
+    /// Bytes of the whole file; `None` if a number is beyond what a scene may have.
+    fn total(&self) -> Option<u64> {
+        let limit = MAX_ELEMENTS as u64;
+        let parts = [
+            (self.vertices, size_of::<Vertex>(), limit),
+            (self.triangles, size_of::<Triangle>(), limit),
+            (self.materials, size_of::<Material>(), limit),
+            (self.lights, size_of::<Light>(), limit),
+            (self.poses, size_of::<RawPose>(), limit),
+            (self.text, 1, MAX_TEXT),
+        ];
+        let fits = parts.iter().all(|(count, _, limit)| count <= limit);
+        let bytes = |(count, size, _): &(u64, usize, u64)| count * *size as u64;
+        fits.then(|| size_of::<Header>() as u64 + parts.iter().map(bytes).sum::<u64>())
+    }
+}
+
+/// Bytes that are read and hashed at once.
+const PIECE: usize = 1 << 20;
+
+/// Reads the parts one behind the other, and hashes them.
+struct Parts<'a> {
+    path: &'a Path,
+    /// Where the next part begins.
+    at: u64,
+    hasher: blake3::Hasher,
+}
+
+impl Parts<'_> {
+    /// The next `count` elements, straight into their memory. Pieces are read and hashed by all threads: each while it is
+    /// in its processor's cache, and each by a handle of its own, since a handle has one position.
+    fn next<T: Pod + Send>(&mut self, count: u64) -> std::io::Result<Vec<T>> {
+        let mut elements: Vec<T> = bytemuck::zeroed_vec(count as usize);
+        let bytes: &mut [u8] = bytemuck::cast_slice_mut(&mut elements);
+        let (start, length) = (self.at, bytes.len() as u64);
+        let read = |(i, piece): (usize, &mut [u8])| {
+            let mut file = File::open(self.path)?;
+            file.seek(SeekFrom::Start(start + (i * PIECE) as u64))?;
+            file.read_exact(piece)?;
+            Ok(blake3::hash(piece))
+        };
+        let hashes: std::io::Result<Vec<blake3::Hash>> = bytes.par_chunks_mut(PIECE).enumerate().map(read).collect();
+        hashes?.iter().for_each(|hash| add(&mut self.hasher, hash));
+        self.at += length;
+        Ok(elements)
+    }
+}
+
+/// The checksum is a hash of the pieces' hashes.
+fn add(hasher: &mut blake3::Hasher, piece: &blake3::Hash) {
+    hasher.update(piece.as_bytes());
+}
+
+fn readers() -> [u8; 16] {
+    let mut text = [0; 16];
+    let hash = READERS.as_bytes();
+    text[..hash.len().min(16)].copy_from_slice(&hash[..hash.len().min(16)]);
+    text
+}
+
+fn raw_pose(pose: &Pose) -> RawPose {
+    let [p, d, u] = [pose.position, pose.direction, pose.up].map(Vec3::as_dvec3);
+    [pose.time, p.x, p.y, p.z, d.x, d.y, d.z, u.x, u.y, u.z]
+}
+
+fn pose(raw: &RawPose) -> Pose {
+    let vector = |i: usize| Vec3::new(raw[i] as f32, raw[i + 1] as f32, raw[i + 2] as f32);
+    Pose { time: raw[0], position: vector(1), direction: vector(4), up: vector(7) }
+}

@@ -1,0 +1,85 @@
+//! Buffers: the bytes that accessors look into.
+
+use super::Fault;
+use crate::scene::Options;
+use base64::Engine;
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+use gltf::Document;
+use gltf::buffer::{Source, View};
+use std::borrow::Cow;
+use std::path::{Component, Path};
+
+/// All buffers of a file.
+pub struct Buffers<'a> {
+    buffers: Vec<Cow<'a, [u8]>>,
+}
+
+impl<'a> Buffers<'a> {
+    /// Loads them: from the GLB itself, from data URIs, from files inside the scene's folder (elsewhere only if the option
+    /// `outside` allows it).
+    pub fn load(path: &Path, document: &Document, blob: Option<&'a [u8]>, options: &Options) -> Result<Self, Fault> {
+        let mut buffers = Vec::new();
+        for buffer in document.buffers() {
+            let bytes: Cow<[u8]> = match buffer.source() {
+                Source::Bin => match blob {
+                    Some(blob) => blob.into(),
+                    None => return Err(("the file has no binary chunk, but needs one".into(), "export it again")),
+                },
+                Source::Uri(uri) => match uri.strip_prefix("data:") {
+                    Some(data) => decode(data)?.into(),
+                    None => file(path, uri, options)?.into(),
+                },
+            };
+            if bytes.len() < buffer.length() {
+                let (index, has, wants) = (buffer.index(), bytes.len(), buffer.length());
+                let problem = format!("buffer {index} is truncated: it has {has} bytes of {wants}");
+                return Err((problem, "copy the whole file"));
+            }
+            buffers.push(bytes);
+        }
+        Ok(Buffers { buffers })
+    }
+
+    /// The bytes of a view.
+    pub fn view(&self, view: &View) -> Result<&[u8], Fault> {
+        let bytes = &self.buffers[view.buffer().index()];
+        let end = view.offset().checked_add(view.length());
+        end.and_then(|end| bytes.get(view.offset()..end))
+            .ok_or_else(|| (format!("buffer view {} reaches beyond its buffer", view.index()), "export the file again"))
+    }
+
+    /// Bytes of all buffers.
+    pub fn total(&self) -> usize {
+        self.buffers.iter().map(|bytes| bytes.len()).sum()
+    }
+}
+
+/// A data URI behind `data:`.
+fn decode(data: &str) -> Result<Vec<u8>, Fault> {
+    const MEND: &str = "buffers in URIs must be base64";
+    let Some((_, text)) = data.split_once(";base64,") else {
+        return Err(("a buffer's data URI is not base64".into(), MEND));
+    };
+    // Padding is often forgotten.
+    let config = GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent);
+    GeneralPurpose::new(&base64::alphabet::STANDARD, config)
+        .decode(text)
+        .map_err(|e| (format!("a buffer's data URI is broken: {e}"), MEND))
+}
+
+/// A file beside the scene.
+fn file(path: &Path, uri: &str, options: &Options) -> Result<Vec<u8>, Fault> {
+    let name = percent_encoding::percent_decode_str(uri).decode_utf8_lossy();
+    let shown: String = name.chars().filter(|c| !c.is_control()).take(80).collect();
+    if name.contains("://") {
+        return Err((format!("buffer {shown} is an address"), "download it, and name the file"));
+    }
+    let leaves = Path::new(&*name).components().any(|c| !matches!(c, Component::Normal(_) | Component::CurDir));
+    if leaves && !options.outside {
+        let problem = format!("buffer {shown} lies outside of the scene's folder");
+        return Err((problem, "allow it with the option outside=yes"));
+    }
+    let file = path.parent().unwrap_or(Path::new("")).join(&*name);
+    let content = crate::scene::read_file(&file);
+    content.map_err(|_| (format!("buffer {shown} cannot be read"), "put it beside the scene's file"))
+}

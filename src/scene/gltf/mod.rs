@@ -1,0 +1,79 @@
+//! glTF 2.0 and GLB, read by the `gltf` crate: meshes, nodes and instances, materials, punctual lights, cameras.
+//!
+//! The crate reads and validates the JSON. Accessors are read here ([`accessor`]): the crate's own iterators rely on
+//! lengths that nobody has checked.
+//!
+//! What is taken: the default scene (else the first, else all nodes), every mesh once per node that shows it, in the
+//! order of the nodes; triangles, strips and fans. A primitive without normals is flat, as the format demands. The first
+//! perspective camera is the scene's. Materials: see [`material`]. Punctual lights become point lights: a spot shines
+//! all around, a directional light stands ten diagonals away; since our lights do not fade, their colours are scaled
+//! so that together their brightest channel is 1. Without any, surfaces that shine become lights ([`super::lamps`]).
+//!
+//! What is not: textures, skins, morph targets, animations (the pose of the nodes counts), points and lines.
+
+mod accessor;
+mod buffers;
+mod material;
+mod walk;
+
+use super::{Options, Scene};
+use crate::error::{Error, Result};
+use buffers::Buffers;
+use std::path::Path;
+use walk::Walk;
+
+/// What is wrong: problem and mend.
+type Fault = (String, &'static str);
+
+/// Reads the file and the buffers that it names.
+///
+/// # Errors
+/// [`Error::Input`] for whatever is wrong with one of them.
+pub fn read(path: &Path, options: &Options) -> Result<Scene> {
+    read_bytes(path, &super::read_file(path)?, options)
+}
+
+/// Reads a file that is already in memory; `path` is where buffers are looked for.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_bytes(path: &Path, bytes: &[u8], options: &Options) -> Result<Scene> {
+    let at = |(problem, mend): Fault| Error::file(path, None, problem, mend);
+    let unchecked = gltf::Gltf::from_slice_without_validation(bytes).map_err(|error| refusal(path, error))?;
+    let json = unchecked.document.into_json();
+    positions_exist(&json).map_err(at)?;
+    let document = gltf::Document::from_json(json).map_err(|error| refusal(path, error))?;
+    let buffers = Buffers::load(path, &document, unchecked.blob.as_deref(), options).map_err(at)?;
+    let mut walk = Walk::new(&document, &buffers);
+    walk.scene().map_err(at)?;
+    walk.finish().map_err(at)
+}
+
+/// The crate's validation (1.4.1) looks into the accessor of a primitive's positions before it has checked that there is
+/// one, and panics.
+fn positions_exist(json: &gltf::json::Root) -> Result<(), Fault> {
+    let positions = gltf::json::validation::Checked::Valid(gltf::Semantic::Positions);
+    let mut primitives = json.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    let beyond = |index: usize| index >= json.accessors.len();
+    match primitives.find_map(|p| p.attributes.get(&positions).map(|i| i.value()).filter(|&i| beyond(i))) {
+        Some(index) => Err((format!("a primitive uses accessor {index}, which is not there"), "export the file again")),
+        None => Ok(()),
+    }
+}
+
+/// What the crate does not like, as one line.
+fn refusal(path: &Path, error: gltf::Error) -> Error {
+    const EXPORT: &str = "export it again";
+    match error {
+        gltf::Error::Deserialize(e) => {
+            let line = path.extension().is_some_and(|x| x.eq_ignore_ascii_case("gltf")).then(|| e.line());
+            Error::file(path, line, format!("the JSON is no glTF: {e}"), EXPORT)
+        }
+        gltf::Error::Validation(faults) => {
+            let first = faults.first().map(|(place, fault)| format!("{place}: {fault}")).unwrap_or_default();
+            let mend = "export it again; compression and other required extensions are not read";
+            Error::file(path, None, format!("{} faults, the first: {first}", faults.len()), mend)
+        }
+        other => Error::file(path, None, format!("this is no glTF: {other}").replace('\n', " "), EXPORT),
+    }
+}

@@ -1,0 +1,141 @@
+//! Lines and words of OBJ and MTL.
+
+use super::Fault;
+use crate::scene::ply::number;
+use glam::Vec3;
+
+/// A text, line by line and word by word. A backslash before the end of a line continues it.
+#[derive(Clone)]
+pub struct Lines<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    line: usize,
+}
+
+impl<'a> Lines<'a> {
+    /// The text from its first line.
+    pub fn new(bytes: &'a [u8]) -> Lines<'a> {
+        Lines { bytes, at: 0, line: 1 }
+    }
+
+    /// The current line, counted from 1.
+    pub fn line(&self) -> usize {
+        self.line
+    }
+
+    /// The first word of the next line that has one and is no comment.
+    pub fn keyword(&mut self) -> Option<&'a [u8]> {
+        loop {
+            self.skip_blanks();
+            match *self.bytes.get(self.at)? {
+                b'\n' | b'\r' | b'#' => self.skip_line(),
+                _ => return self.word(),
+            }
+        }
+    }
+
+    /// The next word of this line.
+    #[inline]
+    pub fn word(&mut self) -> Option<&'a [u8]> {
+        self.skip_blanks();
+        let rest = self.bytes.get(self.at..).filter(|rest| rest.first().is_some_and(|&b| b > b' ' && b != b'#'))?;
+        let word = &rest[..number::token_length(rest)];
+        self.at += word.len();
+        Some(word)
+    }
+
+    /// The rest of the line without blanks around it.
+    pub fn rest(&mut self) -> &'a [u8] {
+        let rest = &self.bytes[self.at..];
+        let end = rest.iter().position(|&b| b == b'\n' || b == b'\r').unwrap_or(rest.len());
+        self.at += end;
+        rest[..end].trim_ascii()
+    }
+
+    /// Goes behind the end of the line. Lines end in LF, CRLF or CR.
+    #[inline]
+    pub fn skip_line(&mut self) {
+        let rest = &self.bytes[self.at..];
+        let Some(end) = rest.iter().position(|&b| b == b'\n' || b == b'\r') else {
+            self.at = self.bytes.len();
+            return;
+        };
+        self.at += end + if rest[end..].starts_with(b"\r\n") { 2 } else { 1 };
+        self.line += 1;
+    }
+
+    /// Blanks, and ends of lines that a backslash takes away.
+    #[inline]
+    fn skip_blanks(&mut self) {
+        while let Some(&b) = self.bytes.get(self.at) {
+            if b == b'\\' && matches!(self.bytes.get(self.at + 1), Some(b'\n' | b'\r')) {
+                self.at += 1;
+                self.skip_line();
+            } else if b <= b' ' && b != b'\n' && b != b'\r' {
+                self.at += 1;
+            } else {
+                return;
+            }
+        }
+    }
+
+    #[inline]
+    fn float(&mut self, what: &str) -> Result<f32, Fault> {
+        self.skip_blanks();
+        if let Some((value, length)) = self.bytes.get(self.at..).and_then(number::float) {
+            self.at += length;
+            return Ok(value);
+        }
+        let problem = match self.word() {
+            Some(word) => format!("{what}: `{}` is not a number", printable(word)),
+            None => format!("{what} has too few numbers"),
+        };
+        Err(Fault::new(self.line, problem, "three numbers are needed"))
+    }
+
+    #[inline]
+    fn three(&mut self, what: &str) -> Result<Vec3, Fault> {
+        Ok(Vec3::new(self.float(what)?, self.float(what)?, self.float(what)?))
+    }
+
+    /// Three finite numbers.
+    #[inline]
+    pub fn vector(&mut self, what: &str) -> Result<Vec3, Fault> {
+        let v = self.three(what)?;
+        if v.is_finite() {
+            return Ok(v);
+        }
+        let problem = format!("{what} has the values ({}, {}, {}), which are not finite", v.x, v.y, v.z);
+        Err(Fault::new(self.line, problem, "remove it or repair the export"))
+    }
+
+    /// Three numbers; what is not finite is zero and computed later.
+    #[inline]
+    pub fn normal(&mut self) -> Result<Vec3, Fault> {
+        self.three("a normal").map(|v| if v.is_finite() { v } else { Vec3::ZERO })
+    }
+
+    /// One finite number.
+    pub fn number(&mut self, what: &str) -> Result<f32, Fault> {
+        let line = self.line;
+        let value = self.float(what)?;
+        if value.is_finite() { Ok(value) } else { Err(Fault::new(line, format!("{what} is not finite"), "repair it")) }
+    }
+
+    /// A colour: one number is a grey, three are red, green and blue; negative ones are zero.
+    pub fn colour(&mut self, what: &str) -> Result<Vec3, Fault> {
+        let red = self.number(what)?;
+        let mut colour = Vec3::splat(red);
+        if let Some(word) = self.word() {
+            self.at -= word.len();
+            colour = Vec3::new(red, self.number(what)?, self.number(what)?);
+        }
+        Ok(colour.max(Vec3::ZERO))
+    }
+}
+
+/// A piece of the file inside a message: readable, short.
+pub fn printable(bytes: &[u8]) -> String {
+    let text = String::from_utf8_lossy(&bytes[..bytes.len().min(200)]);
+    text.chars().filter(|c| !c.is_control()).take(80).collect()
+}

@@ -1,0 +1,132 @@
+//! The catalogue: sound entries, disjoint names, found or missing files.
+
+use super::{real_scenes, refusal};
+use rtbench::scene::catalogue::{Class, entries, find, get, locate};
+use rtbench::scene::{self, load_in};
+use std::path::{Component, Path};
+
+#[test]
+fn entries_are_sound() {
+    let published: Vec<&str> = entries().iter().filter(|e| e.published).map(|e| e.name.as_str()).collect();
+    assert_eq!(
+        published,
+        ["bunny", "dragon", "buddha", "robots", "museum", "kitchen", "theatre", "office", "conference"]
+    );
+    for entry in entries() {
+        let name = &entry.name;
+        assert!(name.chars().all(|c| c.is_ascii_lowercase() || c == '-'), "{name}");
+        assert!(entry.triangles > 0 && !entry.file.is_empty(), "{name}");
+        for text in [&entry.title, &entry.source, &entry.licence, &entry.credit] {
+            assert!(!text.is_empty() && !text.contains('\n'), "{name}");
+        }
+        let inside = |path: &Path| path.components().all(|c| matches!(c, Component::Normal(_)));
+        for candidate in &entry.file {
+            assert!(inside(&candidate.path), "{name}");
+            let hash = candidate.sha256.as_deref().unwrap_or(&"0".repeat(64)).to_owned();
+            assert!(hash.len() == 64 && hash.bytes().all(|b| b"0123456789abcdef".contains(&b)), "{name}");
+        }
+        if let Some(archive) = &entry.fetch {
+            assert!(archive.url.starts_with("https://") && archive.url.ends_with(".tar.gz"), "{name}");
+            assert!(inside(&archive.member), "{name}");
+            assert!(entry.file.iter().any(|c| c.path == archive.to), "{name}: what is fetched would not be found");
+        }
+        if let Some(path) = &entry.camera_path {
+            assert!(rtbench::camera::names().contains(&path.as_str()), "{name}: no camera path {path}");
+        }
+        assert!(entry.options.split(',').all(|o| o.is_empty() || o.contains('=')), "{name}");
+    }
+    assert_eq!(
+        (get("robots").unwrap().grid.as_deref(), get("kitchen").unwrap().grid.as_deref()),
+        (Some("x=128"), Some("y=128"))
+    );
+    assert_eq!((get("dragon").unwrap().class, get("office").unwrap().class), (Class::Object, Class::Walk));
+    assert!(get("dragn").unwrap_err().to_string().contains("did you mean dragon?"));
+}
+
+#[test]
+fn no_name_means_two_scenes() {
+    let mut names: Vec<&str> = entries().iter().map(|e| e.name.as_str()).collect();
+    names.extend(scene::list().iter().map(|info| info.name));
+    let all = names.len();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), all);
+}
+
+#[test]
+fn a_name_is_its_file_in_the_folder_of_scenes() {
+    let folder = tempfile::tempdir().unwrap();
+    let entry = find("bunny").unwrap();
+    assert_eq!(locate(entry, folder.path()), None);
+    let message = refusal(load_in("bunny", Some(folder.path())));
+    assert!(message.contains("has no bunny/bun_zipper.ply") && message.contains("scenes fetch bunny"), "{message}");
+    let message = refusal(load_in("bunny", Some(&folder.path().join("nowhere"))));
+    assert!(message.contains("does not exist"), "{message}");
+    // The last of the candidates, then the first.
+    for place in ["bun_zipper.ply", "bunny/bun_zipper.ply"] {
+        let path = folder.path().join(place);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(&path, super::ply::CUBE).unwrap();
+        assert_eq!(locate(entry, folder.path()), Some(path));
+    }
+    let cube = load_in("bunny", Some(folder.path())).unwrap();
+    assert_eq!(cube.name, "bunny");
+    assert!(cube.warnings.iter().any(|w| w.contains("the catalogue expects 69451")), "{:?}", cube.warnings);
+    assert_eq!(load_in("bunny:scale=2", Some(folder.path())).unwrap().name, "bunny:scale=2");
+    assert!(refusal(load_in("bunny:size=2", Some(folder.path()))).contains("no option `size`"));
+}
+
+#[test]
+fn a_folder_and_a_list_are_one_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let whole = folder.path().to_str().unwrap();
+    assert!(refusal(scene::load(whole)).contains("no file of a known format"));
+    for name in ["b.ply", "a.ply"] {
+        std::fs::write(folder.path().join(name), super::ply::CUBE).unwrap();
+    }
+    std::fs::write(folder.path().join("notes.txt"), "not a scene").unwrap();
+    let one = scene::load(&at("a.ply")).unwrap();
+    for what in [whole.to_owned(), format!("{}+{}", at("a.ply"), at("b.ply")), format!("{whole}/")] {
+        let both = scene::load(&what).unwrap();
+        assert_eq!(both.triangles.len(), 2 * one.triangles.len(), "{what}");
+        assert_eq!(both.vertices.len(), 2 * one.vertices.len());
+        let (first, second) = (both.triangles[0], both.triangles[one.triangles.len()]);
+        assert_eq!(second.vertices, first.vertices.map(|v| v + one.vertices.len() as u32));
+        assert_eq!(second.material, 1);
+        assert!(!both.name.is_empty());
+    }
+    assert!(refusal(scene::load(&format!("{}+{}", at("a.ply"), at("c.ply")))).contains("c.ply: no such file"));
+    std::fs::write(folder.path().join("c.ply"), "ply\n").unwrap();
+    assert!(refusal(scene::load(whole)).contains("c.ply"));
+}
+
+/// What is here has the counts that the catalogue promises, and the hash.
+#[test]
+fn real_scenes_are_as_the_catalogue_says() {
+    use sha2::{Digest, Sha256};
+    let Some(folder) = real_scenes("real_scenes_are_as_the_catalogue_says") else { return };
+    for entry in entries() {
+        let Some(path) = locate(entry, &folder) else {
+            eprintln!("{}: not checked, not here", entry.name);
+            continue;
+        };
+        let candidate = entry.file.iter().find(|c| folder.join(&c.path) == path).unwrap();
+        if let Some(expected) = &candidate.sha256 {
+            let hash = Sha256::digest(std::fs::read(&path).unwrap());
+            let hash: String = hash.iter().map(|b| format!("{b:02x}")).collect();
+            assert_eq!(&hash, expected, "{}", entry.name);
+        }
+        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("obj");
+        if !scene::FORMATS.iter().any(|(known, _)| *known == extension) {
+            eprintln!("{}: not loaded, no reader for .{extension}", entry.name);
+            continue;
+        }
+        let loaded = load_in(&entry.name, Some(&folder)).unwrap();
+        assert_eq!(loaded.triangles.len(), entry.triangles, "{}", entry.name);
+        assert_eq!(loaded.name, entry.name);
+        if let Some(vertices) = entry.vertices {
+            assert_eq!(loaded.vertices.len(), vertices, "{}", entry.name);
+        }
+    }
+}
