@@ -3,11 +3,13 @@
 //! [`Scene`] is the only thing that the rest of the crate sees of a file. [`load`] finds a reader by extension, or a
 //! procedural scene by name; adding a format is one file and one line in [`FORMATS`].
 
+pub mod mesh_builder;
 pub mod normals;
 mod options;
 pub mod ply;
 pub mod procedural;
 mod suggest;
+pub mod text;
 
 use crate::error::{Error, Result};
 use crate::math::{Aabb, Vertex};
