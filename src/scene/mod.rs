@@ -3,6 +3,7 @@
 //! [`Scene`] is the only thing that the rest of the crate sees of a file. [`load`] finds a reader by extension, or a
 //! procedural scene by name; adding a format is one file and one line in [`FORMATS`].
 
+pub mod aff;
 pub mod mesh_builder;
 pub mod normals;
 mod options;
@@ -29,7 +30,7 @@ pub const MAX_ELEMENTS: usize = 1 << 27;
 pub type Reader = fn(&Path, &Options) -> Result<Scene>;
 
 /// Readers by file extension (lower case).
-pub const FORMATS: &[(&str, Reader)] = &[("ply", |path, _| ply::read(path))];
+pub const FORMATS: &[(&str, Reader)] = &[("ply", |path, _| ply::read(path)), ("aff", aff::read), ("nff", aff::read)];
 
 /// One triangle: three vertices and a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]

@@ -1,9 +1,11 @@
 //! What readers of text formats share: words with their lines, numbers, faults.
 
+mod includes;
 pub mod number;
 mod words;
 
 use crate::error::Error;
+pub use includes::Includes;
 use std::path::Path;
 pub use words::{Syntax, Words};
 
@@ -32,6 +34,45 @@ impl Fault {
     /// The error for the user.
     pub fn of(self, path: &Path) -> Error {
         Error::file(path, self.line, self.problem, self.mend)
+    }
+}
+
+/// Why reading a file that may include others ends.
+#[derive(Debug)]
+pub enum Trouble {
+    /// Something in this file.
+    Here(Fault),
+    /// Something in a file that it includes.
+    Included(Error),
+}
+
+impl Trouble {
+    /// The error for the user, of something that was read from the file `path`.
+    pub fn of(self, path: &Path) -> Error {
+        match self {
+            Trouble::Here(fault) => fault.of(path),
+            Trouble::Included(error) => error,
+        }
+    }
+
+    /// With this line, if it is here and has none of its own.
+    pub fn at(self, line: usize) -> Trouble {
+        match self {
+            Trouble::Here(fault) => Trouble::Here(fault.at(line)),
+            Trouble::Included(error) => Trouble::Included(error),
+        }
+    }
+}
+
+impl From<Fault> for Trouble {
+    fn from(fault: Fault) -> Trouble {
+        Trouble::Here(fault)
+    }
+}
+
+impl From<Error> for Trouble {
+    fn from(error: Error) -> Trouble {
+        Trouble::Included(error)
     }
 }
 

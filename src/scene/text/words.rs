@@ -63,20 +63,20 @@ pub struct Words<'a> {
     syntax: &'a Syntax,
     at: usize,
     /// Line of the byte at `at`.
-    line: usize,
+    here: usize,
     /// Line in which the word that was read last began.
-    word_line: usize,
+    line: usize,
 }
 
 impl<'a> Words<'a> {
     /// The words of `bytes`, from line 1.
     pub fn new(bytes: &'a [u8], syntax: &'a Syntax) -> Words<'a> {
-        Words { bytes, syntax, at: 0, line: 1, word_line: 1 }
+        Words { bytes, syntax, at: 0, here: 1, line: 1 }
     }
 
     /// Line of the word that was read last.
     pub fn line(&self) -> usize {
-        self.word_line
+        self.line
     }
 
     /// Bytes not yet read.
@@ -87,7 +87,7 @@ impl<'a> Words<'a> {
     /// A fault in the line of the word that was read last.
     #[cold]
     pub fn fault(&self, problem: impl Into<String>, mend: impl Into<String>) -> Fault {
-        Fault::new(Some(self.word_line), problem, mend)
+        Fault::new(Some(self.line), problem, mend)
     }
 
     /// Counts the line that ends with the byte at `at`.
@@ -95,7 +95,7 @@ impl<'a> Words<'a> {
     fn end_line(&mut self) {
         // Of CRLF the second byte counts
         let half = self.bytes[self.at] == b'\r' && self.bytes.get(self.at + 1) == Some(&b'\n');
-        self.line += usize::from(!half);
+        self.here += usize::from(!half);
     }
 
     /// Goes to the next word.
@@ -132,7 +132,7 @@ impl<'a> Words<'a> {
     /// Passes over a word that begins at `at`.
     #[inline]
     fn pass(&mut self, word: &[u8]) {
-        self.word_line = self.line;
+        self.line = self.here;
         if word[0] == b'"' {
             for _ in 0..word.len() {
                 if self.syntax.class(self.bytes[self.at]) == Class::LineEnd {
@@ -162,17 +162,33 @@ impl<'a> Words<'a> {
 
     /// The next word, if it stands in the line of the word that was read last.
     pub fn next_on_line(&mut self) -> Option<&'a [u8]> {
-        let (at, line) = (self.at, self.line);
+        let (at, here) = (self.at, self.here);
         match self.peek() {
-            Some(word) if self.line == line => {
+            Some(word) if self.here == here => {
                 self.pass(word);
                 Some(word)
             }
             _ => {
-                (self.at, self.line) = (at, line);
+                (self.at, self.here) = (at, here);
                 None
             }
         }
+    }
+
+    /// The next word, which stays, if it stands in the line of the word that was read last.
+    pub fn peek_on_line(&mut self) -> Option<&'a [u8]> {
+        let (at, here, line) = (self.at, self.here, self.line);
+        let word = self.next_on_line();
+        (self.at, self.here, self.line) = (at, here, line);
+        word
+    }
+
+    /// Passes over as many words.
+    ///
+    /// # Errors
+    /// The file ends.
+    pub fn skip(&mut self, words: usize, what: &str) -> Result<(), Fault> {
+        (0..words).try_for_each(|_| self.need(what).map(|_| ()))
     }
 
     /// Passes over the rest of the line.
@@ -344,14 +360,17 @@ mod tests {
 
     #[test]
     fn a_word_may_be_asked_for_on_the_same_line_only() {
-        let mut words = Words::new(b"l 1 # one\n2 3", &AFF);
+        let mut words = Words::new(b"l 1 # one\n2 3\n4 5", &AFF);
         assert_eq!(words.next_on_line(), Some(&b"l"[..]));
+        assert_eq!(words.peek_on_line(), Some(&b"1"[..]));
         assert_eq!(words.next_on_line(), Some(&b"1"[..]));
+        assert_eq!(words.peek_on_line(), None);
         assert_eq!(words.next_on_line(), None);
         assert_eq!(words.line(), 1);
         assert_eq!(words.next(), Some(&b"2"[..]));
         words.skip_line();
-        assert_eq!(words.next(), None);
+        assert_eq!(words.next(), Some(&b"4"[..]));
+        assert!(words.skip(1, "x").is_ok() && words.skip(1, "x").is_err());
     }
 
     #[test]

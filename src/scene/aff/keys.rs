@@ -1,0 +1,114 @@
+//! Keyframes: what `k NAME { ... }` says, and where it puts things at a time.
+
+use super::spline::{Key, Spline, align};
+use crate::scene::text::{Fault, Words, quote_bytes};
+use glam::{DAffine3, DQuat, DVec3};
+
+/// The keyframes of one name. Empty blocks leave things as they are.
+#[derive(Default)]
+pub struct Keyframes {
+    translations: Vec<Key<DVec3>>,
+    rotations: Vec<Key<DQuat>>,
+    scales: Vec<Key<DVec3>>,
+    /// Time and whether it is visible from then on.
+    visibility: Vec<(f64, bool)>,
+}
+
+impl Keyframes {
+    /// Reads `{ blocks }`.
+    pub fn read(words: &mut Words) -> Result<Keyframes, Fault> {
+        let mut keyframes = Keyframes::default();
+        words.expect("{", "k")?;
+        loop {
+            match words.need("k")? {
+                b"}" => return Ok(keyframes),
+                b"transl" => keyframes.translations = block(words, "transl", vector)?,
+                b"scale" => keyframes.scales = block(words, "scale", vector)?,
+                b"rot" => {
+                    keyframes.rotations = block(words, "rot", rotation)?;
+                    align(&mut keyframes.rotations);
+                }
+                b"visibility" => {
+                    let count = words.count(4, "visibility")?;
+                    for _ in 0..count {
+                        let [time, visible] = words.numbers("visibility")?;
+                        in_order(words, keyframes.visibility.last().map(|key| key.0), time)?;
+                        keyframes.visibility.push((time, visible != 0.0));
+                    }
+                }
+                other => {
+                    let problem = format!("{} is no block of keyframes", quote_bytes(other));
+                    return Err(words.fault(problem, "blocks are transl, rot, scale and visibility"));
+                }
+            }
+        }
+    }
+
+    /// The first time at which anything is given.
+    pub fn first_time(&self) -> Option<f64> {
+        let splines = [second(&self.translations), second(&self.rotations), second(&self.scales)];
+        splines.into_iter().flatten().min_by(f64::total_cmp)
+    }
+
+    /// Where things are at a time: scaled, then turned, then moved.
+    pub fn transform(&self, time: f64) -> DAffine3 {
+        let vector = |keys: &[Key<DVec3>], default| if keys.is_empty() { default } else { keys.at(time) };
+        let scale = vector(&self.scales, DVec3::ONE);
+        DAffine3::from_scale_rotation_translation(scale, self.rotation(time), vector(&self.translations, DVec3::ZERO))
+    }
+
+    /// The rotation alone.
+    pub fn rotation(&self, time: f64) -> DQuat {
+        if self.rotations.is_empty() { DQuat::IDENTITY } else { self.rotations.as_slice().at(time) }
+    }
+
+    /// Whether things are visible at a time: before the first key they are.
+    pub fn visible(&self, time: f64) -> bool {
+        self.visibility.iter().take_while(|key| key.0 <= time).last().is_none_or(|key| key.1)
+    }
+}
+
+fn second<T>(keys: &[Key<T>]) -> Option<f64> {
+    keys.get(1).map(|key| key.time)
+}
+
+fn in_order(words: &Words, before: Option<f64>, time: f64) -> Result<(), Fault> {
+    match before {
+        Some(before) if time < before => {
+            Err(words.fault(format!("the key at {time} comes behind the one at {before}"), "put keys in order of time"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Rows of a time, a value, tension, continuity and bias.
+fn block<T>(
+    words: &mut Words,
+    what: &str,
+    value: fn(&mut Words, &str) -> Result<T, Fault>,
+) -> Result<Vec<Key<T>>, Fault> {
+    let count = words.count(14, what)?;
+    if count < 4 {
+        return Err(words.fault(format!("{what}: {count} keys"), "a spline needs four keys at least"));
+    }
+    let mut keys: Vec<Key<T>> = Vec::with_capacity(count);
+    for _ in 0..count {
+        let time = words.number(what)?;
+        in_order(words, keys.last().map(|key| key.time), time)?;
+        let value = value(words, what)?;
+        let [tension, continuity, bias] = words.numbers(what)?;
+        keys.push(Key { time, value, tension, continuity, bias });
+    }
+    Ok(keys)
+}
+
+fn vector(words: &mut Words, what: &str) -> Result<DVec3, Fault> {
+    words.numbers(what).map(DVec3::from)
+}
+
+/// An axis and an angle in degrees; an axis of no length turns nothing.
+pub fn rotation(words: &mut Words, what: &str) -> Result<DQuat, Fault> {
+    let [x, y, z, degrees] = words.numbers(what)?;
+    let axis = DVec3::new(x, y, z).normalize_or_zero();
+    Ok(if axis == DVec3::ZERO { DQuat::IDENTITY } else { DQuat::from_axis_angle(axis, degrees.to_radians()) })
+}
