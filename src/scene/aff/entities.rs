@@ -74,8 +74,7 @@ impl Reader {
             if self.pass == Pass::Keys {
                 return Ok((DAffine3::IDENTITY, true));
             }
-            let keys = self.keys_of(name, words)?;
-            return Ok((keys.transform(self.time), keys.visible(self.time)));
+            return Ok(self.moved(name));
         }
         let scale = words.numbers("xs").map(DVec3::from)?;
         let turn = rotation(words, "xs")?;
@@ -83,11 +82,17 @@ impl Reader {
         Ok((DAffine3::from_scale_rotation_translation(scale, turn, translation), true))
     }
 
-    fn keys_of(&self, name: &[u8], words: &Words) -> Result<&Keyframes, Fault> {
-        self.keys.get(name).ok_or_else(|| {
-            let problem = format!("there are no keyframes {}", quote_bytes(name));
-            words.fault(problem, "give them with `k`, here or in another file of the scene")
-        })
+    /// Where keyframes put things, and whether those are visible. BART's robots name keyframes that are nowhere: what
+    /// they would move stays where it is.
+    fn moved(&mut self, name: &[u8]) -> (DAffine3, bool) {
+        match self.keys.get(name) {
+            Some(keys) => (keys.transform(self.time), keys.visible(self.time)),
+            None => {
+                let name = quote_bytes(name);
+                self.mesh.warnings.add(&format!("there are no keyframes {name}: what they would move stays"));
+                (DAffine3::IDENTITY, true)
+            }
+        }
     }
 
     fn entity(&mut self, entity: &[u8], words: &mut Words) -> Result<(), Fault> {
@@ -101,6 +106,10 @@ impl Reader {
             b"k" => {
                 let name = words.need("k")?;
                 let keyframes = Keyframes::read(words)?;
+                if keys && keyframes.left_out > 0 {
+                    let (name, count) = (quote_bytes(name), keyframes.left_out);
+                    self.mesh.warnings.add(&format!("keyframes {name}: {count} keys out of order left out"));
+                }
                 if keys && self.keys.insert(name.to_vec(), keyframes).is_some() {
                     let name = quote_bytes(name);
                     self.mesh.warnings.add(&format!("keyframes {name} are given again: the last ones count"));
@@ -127,8 +136,8 @@ impl Reader {
         let (position, visible) = match name {
             None => (position, true),
             Some(name) => {
-                let keys = self.keys_of(name, words)?;
-                (keys.transform(self.time).transform_point3(position), keys.visible(self.time))
+                let (transform, visible) = self.moved(name);
+                (transform.transform_point3(position), visible)
             }
         };
         if visible { self.mesh.light(position, colour) } else { Ok(()) }

@@ -12,6 +12,9 @@ pub struct Keyframes {
     scales: Vec<Key<DVec3>>,
     /// Time and whether it is visible from then on.
     visibility: Vec<(f64, bool)>,
+    /// Keys that were left out because their time lies before that of the key ahead of them. (BART's robots have some:
+    /// there they repeat what was said before.)
+    pub left_out: usize,
 }
 
 impl Keyframes {
@@ -22,18 +25,21 @@ impl Keyframes {
         loop {
             match words.need("k")? {
                 b"}" => return Ok(keyframes),
-                b"transl" => keyframes.translations = block(words, "transl", vector)?,
-                b"scale" => keyframes.scales = block(words, "scale", vector)?,
+                b"transl" => keyframes.translations = keyframes.block(words, "transl", vector)?,
+                b"scale" => keyframes.scales = keyframes.block(words, "scale", vector)?,
                 b"rot" => {
-                    keyframes.rotations = block(words, "rot", rotation)?;
+                    keyframes.rotations = keyframes.block(words, "rot", rotation)?;
                     align(&mut keyframes.rotations);
                 }
                 b"visibility" => {
                     let count = words.count(4, "visibility")?;
                     for _ in 0..count {
                         let [time, visible] = words.numbers("visibility")?;
-                        in_order(words, keyframes.visibility.last().map(|key| key.0), time)?;
-                        keyframes.visibility.push((time, visible != 0.0));
+                        if keyframes.visibility.last().is_none_or(|last| time >= last.0) {
+                            keyframes.visibility.push((time, visible != 0.0));
+                        } else {
+                            keyframes.left_out += 1;
+                        }
                     }
                 }
                 other => {
@@ -42,6 +48,32 @@ impl Keyframes {
                 }
             }
         }
+    }
+
+    /// Rows of a time, a value, tension, continuity and bias.
+    fn block<T>(
+        &mut self,
+        words: &mut Words,
+        what: &str,
+        value: fn(&mut Words, &str) -> Result<T, Fault>,
+    ) -> Result<Vec<Key<T>>, Fault> {
+        let count = words.count(14, what)?;
+        let mut keys: Vec<Key<T>> = Vec::with_capacity(count);
+        for _ in 0..count {
+            let time = words.number(what)?;
+            let value = value(words, what)?;
+            let [tension, continuity, bias] = words.numbers(what)?;
+            if keys.last().is_none_or(|last| time >= last.time) {
+                keys.push(Key { time, value, tension, continuity, bias });
+            } else {
+                self.left_out += 1;
+            }
+        }
+        if keys.len() < 4 {
+            let problem = format!("{what}: {} keys in order of time", keys.len());
+            return Err(words.fault(problem, "a spline needs four at least"));
+        }
+        Ok(keys)
     }
 
     /// The first time at which anything is given.
@@ -70,36 +102,6 @@ impl Keyframes {
 
 fn second<T>(keys: &[Key<T>]) -> Option<f64> {
     keys.get(1).map(|key| key.time)
-}
-
-fn in_order(words: &Words, before: Option<f64>, time: f64) -> Result<(), Fault> {
-    match before {
-        Some(before) if time < before => {
-            Err(words.fault(format!("the key at {time} comes behind the one at {before}"), "put keys in order of time"))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Rows of a time, a value, tension, continuity and bias.
-fn block<T>(
-    words: &mut Words,
-    what: &str,
-    value: fn(&mut Words, &str) -> Result<T, Fault>,
-) -> Result<Vec<Key<T>>, Fault> {
-    let count = words.count(14, what)?;
-    if count < 4 {
-        return Err(words.fault(format!("{what}: {count} keys"), "a spline needs four keys at least"));
-    }
-    let mut keys: Vec<Key<T>> = Vec::with_capacity(count);
-    for _ in 0..count {
-        let time = words.number(what)?;
-        in_order(words, keys.last().map(|key| key.time), time)?;
-        let value = value(words, what)?;
-        let [tension, continuity, bias] = words.numbers(what)?;
-        keys.push(Key { time, value, tension, continuity, bias });
-    }
-    Ok(keys)
 }
 
 fn vector(words: &mut Words, what: &str) -> Result<DVec3, Fault> {

@@ -153,10 +153,18 @@ impl Reader {
             let mut index = |count| -> Result<[usize; 3], Fault> {
                 Ok([words.index(count, "m")?, words.index(count, "m")?, words.index(count, "m")?])
             };
-            let corners = index(count)?.map(|i| positions[i]);
-            let given = normal_count.map(&mut index).transpose()?.map(|n| n.map(|i| normals[i]));
+            let corners = index(count)?;
+            let given = normal_count.map(&mut index).transpose()?;
             texture_count.map(&mut index).transpose()?;
-            self.mesh.polygon(&corners, given.as_ref().map_or(&[], |n| n))?;
+            let mut vertices = [0; 3];
+            for (corner, vertex) in vertices.iter_mut().enumerate() {
+                let at = corners[corner];
+                // Without normals the vertices have none, and every triangle is shaded with its own
+                let normal = given.map_or(0, |given| given[corner]);
+                let direction = given.map_or(DVec3::ZERO, |given| normals[given[corner]]);
+                *vertex = self.mesh.indexed_vertex([at as u32, normal as u32], positions[at], direction)?;
+            }
+            self.mesh.triangle(vertices)?;
         }
         Ok(())
     }

@@ -181,28 +181,53 @@ impl MeshBuilder {
         }
     }
 
-    /// The index of a vertex, new or shared. The normal may have any length; zero stays zero.
+    /// The index of a vertex, new or shared with an equal one of this shape. The normal may have any length; zero stays
+    /// zero, and is shaded with the triangle's own.
     ///
     /// # Errors
     /// The position is beyond single precision, or there are too many.
     pub fn vertex(&mut self, position: DVec3, normal: DVec3) -> Result<u32, Fault> {
-        let frame = *self.frame();
+        let vertex = self.place(position, normal)?;
+        let bits = [vertex.position, vertex.normal].map(|v| v.to_array().map(f32::to_bits));
+        let key = [bits[0][0], bits[0][1], bits[0][2], bits[1][0], bits[1][1], bits[1][2]];
+        match self.shared.get(&key) {
+            Some(&index) => Ok(index),
+            None => self.store(key, vertex),
+        }
+    }
+
+    /// The same for a mesh that has indices of its own: corners with the same two indices share a vertex, others do not.
+    ///
+    /// # Errors
+    /// As [`MeshBuilder::vertex`].
+    pub fn indexed_vertex(&mut self, indices: [u32; 2], position: DVec3, normal: DVec3) -> Result<u32, Fault> {
+        // No position begins with this: it is not a number
+        let key = [u32::MAX, indices[0], indices[1], 0, 0, 0];
+        if let Some(&index) = self.shared.get(&key) {
+            return Ok(index);
+        }
+        let vertex = self.place(position, normal)?;
+        self.store(key, vertex)
+    }
+
+    /// A vertex where the present transform puts it.
+    fn place(&self, position: DVec3, normal: DVec3) -> Result<Vertex, Fault> {
+        let frame = self.frame();
         // Adding zero makes -0 and 0 the same vertex
         let position = frame.affine.transform_point3(position).as_vec3() + Vec3::ZERO;
         if !position.is_finite() {
             return Err(Fault::new(None, format!("a corner at {position} is not finite in single precision"), FINITE));
         }
         let normal = unit(frame.normals * unit(normal)).as_vec3() + Vec3::ZERO;
-        let bits = [position, normal].map(|v| v.to_array().map(f32::to_bits));
-        let key = [bits[0][0], bits[0][1], bits[0][2], bits[1][0], bits[1][1], bits[1][2]];
-        if let Some(&index) = self.shared.get(&key) {
-            return Ok(index);
-        }
+        Ok(Vertex::new(position, normal))
+    }
+
+    fn store(&mut self, key: [u32; 6], vertex: Vertex) -> Result<u32, Fault> {
         let index = self.vertices.len();
         self.limits.elements(index)?;
         self.limits.grow(size_of::<Vertex>())?;
         self.limits.hold(self.shared.capacity())?;
-        self.vertices.push(Vertex::new(position, normal));
+        self.vertices.push(vertex);
         self.shared.insert(key, index as u32);
         Ok(index as u32)
     }
