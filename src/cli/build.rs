@@ -1,6 +1,6 @@
 //! `rtbench build`: structures alone.
 
-use super::output;
+use super::{load, output};
 use crate::accel::Selection;
 use crate::bench::plan::{self, parse_list};
 use crate::bench::sweep;
@@ -9,7 +9,6 @@ use crate::results::record::StructureRecord;
 use crate::results::statistics;
 use crate::results::summary::{self, StructureRow};
 use crate::results::{files, table};
-use crate::scene;
 use clap::Args;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -21,6 +20,9 @@ pub struct Arguments {
     /// Scene file, or built-in scene with parameters; may be repeated
     #[arg(long, required = true, value_name = "FILE|NAME[:KEY=VALUE,..]")]
     scene: Vec<String>,
+    /// Moment at which the moving geometry of scene files is frozen, as FILE:time=T
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    scene_time: Option<f64>,
     /// Structures with options; comma list, may be repeated
     #[arg(long, value_name = "NAME[:KEY=VALUE,..]", default_value = "grid,kdtree,bvh,ploc-stack")]
     structure: Vec<String>,
@@ -57,10 +59,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     let mut rows = Vec::new();
     let mut broken = 0;
     for what in &arguments.scene {
-        let scene = scene::load(what)?;
-        for warning in &scene.warnings {
-            output::note(&format!("{}: {warning}", scene.name));
-        }
+        let scene = load::scene(what, arguments.scene_time)?;
         let scene_record = plan::scene_record(&scene);
         for selection in &selections {
             let mut built = selection.build(&scene, arguments.threads)?;

@@ -4,9 +4,11 @@
 //! wrong, 2 something could not run, 130 Ctrl-C.
 
 mod build;
+mod camera_path;
 mod completions;
 mod device;
 mod devices;
+mod load;
 mod output;
 mod progress;
 mod render;
@@ -46,6 +48,8 @@ enum Command {
     Trace(trace::Arguments),
     #[command(subcommand)]
     Scenes(scenes::Command),
+    #[command(subcommand)]
+    CameraPath(camera_path::Command),
     Structures(structures::Arguments),
     Devices(devices::Arguments),
     Completions(completions::Arguments),
@@ -74,6 +78,7 @@ fn run(command: Command) -> Result<ExitCode> {
         Command::Build(arguments) => build::run(&arguments),
         Command::Trace(arguments) => trace::run(&arguments).map(done),
         Command::Scenes(command) => scenes::run(&command).map(done),
+        Command::CameraPath(command) => camera_path::run(&command).map(done),
         Command::Structures(arguments) => structures::run(&arguments).map(done),
         Command::Devices(arguments) => devices::run(&arguments).map(done),
         Command::Completions(arguments) => completions::run(&arguments).map(done),

@@ -1,14 +1,13 @@
 //! `rtbench render`: one frame as a picture.
 
 use super::device::{self, DeviceArguments};
-use super::output;
+use super::{load, output};
 use crate::accel::Selection;
 use crate::backend::{Config, Counters, Prepared, Size};
 use crate::bench::plan;
 use crate::camera::{CameraPath, View};
 use crate::error::{Error, Result};
 use crate::results::picture;
-use crate::scene;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -19,6 +18,9 @@ pub struct Arguments {
     /// Scene file, or built-in scene with parameters
     #[arg(long, value_name = "FILE|NAME[:KEY=VALUE,..]")]
     scene: String,
+    /// Moment at which the moving geometry of scene files is frozen, as FILE:time=T
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    scene_time: Option<f64>,
     /// Camera path, instead of the scene's own
     #[arg(long, value_name = "FILE|NAME")]
     camera_path: Option<String>,
@@ -94,10 +96,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let config = plan::parse_config(&arguments.config)?;
     let size = plan::parse_size(&arguments.resolution)?;
     arguments.device.check()?;
-    let scene = scene::load(&arguments.scene)?;
-    for warning in &scene.warnings {
-        output::note(&format!("{}: {warning}", scene.name));
-    }
+    let scene = load::scene(&arguments.scene, arguments.scene_time)?;
     let path = match &arguments.camera_path {
         Some(name) => CameraPath::load(name)?,
         None => CameraPath::for_scene(&scene, config),

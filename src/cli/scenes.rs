@@ -18,6 +18,9 @@ pub enum Command {
         /// Scene file, or built-in scene with parameters
         #[arg(value_name = "FILE|NAME[:KEY=VALUE,..]")]
         scene: String,
+        /// Moment at which the moving geometry of scene files is frozen, as FILE:time=T
+        #[arg(long, value_name = "T", allow_negative_numbers = true)]
+        scene_time: Option<f64>,
     },
 }
 
@@ -34,7 +37,7 @@ Examples:
 pub fn run(command: &Command) -> Result<()> {
     match command {
         Command::List => list(),
-        Command::Info { scene } => info(scene),
+        Command::Info { scene, scene_time } => info(scene, *scene_time),
     }
 }
 
@@ -51,8 +54,8 @@ fn list() -> Result<()> {
     output::print(&text)
 }
 
-fn info(what: &str) -> Result<()> {
-    let scene = scene::load(what)?;
+fn info(what: &str, time: Option<f64>) -> Result<()> {
+    let scene = scene::load(&time.map_or_else(|| what.to_owned(), |time| scene::at_time(what, time)))?;
     let bounds = scene.bounds();
     let extent = bounds.extent();
     let mut text = format!("{}\n", scene.name);

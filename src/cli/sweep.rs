@@ -9,6 +9,7 @@ use crate::bench::sweep::{self, Job};
 use crate::error::{Error, Result};
 use crate::results::record::Status;
 use crate::results::{files, table};
+use crate::scene;
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -29,6 +30,9 @@ pub struct Arguments {
     /// Scene file, or built-in scene with parameters; may be repeated
     #[arg(long, value_name = "FILE|NAME[:KEY=VALUE,..]")]
     scene: Vec<String>,
+    /// Moment at which the moving geometry of scene files is frozen, as FILE:time=T
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    scene_time: Option<f64>,
     /// Folder in which presets look for scene files [default: the variable RTBENCH_SCENES]
     #[arg(long, value_name = "FOLDER")]
     scenes_dir: Option<PathBuf>,
@@ -84,7 +88,7 @@ Ctrl-C ends a sweep in order: what was measured is kept.";
 /// # Errors
 /// What could not run; wrong answers are the exit code 1.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
-    let plan = Plan::new(&Request {
+    let mut plan = Plan::new(&Request {
         preset: arguments.preset.clone(),
         scenes: arguments.scene.clone(),
         camera_path: arguments.camera_path.clone(),
@@ -96,6 +100,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         warmup_frames: arguments.warmup,
         scenes_folder: arguments.scenes_dir.clone().or_else(|| std::env::var_os("RTBENCH_SCENES").map(PathBuf::from)),
     })?;
+    if let Some(time) = arguments.scene_time {
+        plan.scenes.iter_mut().for_each(|scene| *scene = scene::at_time(scene, time));
+    }
     for absent in &plan.skipped {
         output::note(&format!("left out: {absent}"));
     }

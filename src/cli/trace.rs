@@ -1,12 +1,11 @@
 //! `rtbench trace`: given rays, so that rtbench can be held against another engine.
 
 use super::device::{self, DeviceArguments};
-use super::output;
+use super::{load, output};
 use crate::accel::Selection;
 use crate::error::Result;
 use crate::math::MISS;
 use crate::results::rays;
-use crate::scene;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -22,6 +21,9 @@ pub struct Arguments {
     /// Scene file, or built-in scene with parameters
     #[arg(long, value_name = "FILE|NAME[:KEY=VALUE,..]")]
     scene: String,
+    /// Moment at which the moving geometry of scene files is frozen, as FILE:time=T
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    scene_time: Option<f64>,
     /// CSV file of rays
     #[arg(long, value_name = "FILE")]
     rays: PathBuf,
@@ -51,10 +53,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let selection = Selection::parse(&arguments.structure)?;
     arguments.device.check()?;
     let rays = rays::read(&arguments.rays)?;
-    let scene = scene::load(&arguments.scene)?;
-    for warning in &scene.warnings {
-        output::note(&format!("{}: {warning}", scene.name));
-    }
+    let scene = load::scene(&arguments.scene, arguments.scene_time)?;
     let device = arguments.device.open()?;
     device::announce(&device);
     let built = selection.build(&scene, arguments.device.threads)?;

@@ -285,10 +285,8 @@ impl Scene {
 pub fn load(what: &str) -> Result<Scene> {
     let (name, settings) = split_settings(what);
     let path = Path::new(name);
-    let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
-    let reader = FORMATS.iter().find(|(known, _)| Some(*known) == extension.as_deref()).map(|(_, reader)| reader);
-    let is_file = reader.is_some() || name.contains(['/', std::path::MAIN_SEPARATOR]) || path.exists();
-    if !is_file {
+    let reader = reader_of(path);
+    if !is_file(name) {
         let mut scene = procedural::build(what)?;
         scene.complete().map_err(|(problem, mend)| Error::argument(what, problem, mend))?;
         return Ok(scene);
@@ -314,6 +312,29 @@ pub fn load(what: &str) -> Result<Scene> {
     }
     scene.complete().map_err(|(problem, mend)| Error::file(path, None, problem, mend))?;
     Ok(scene)
+}
+
+/// The same scene with its moving geometry frozen at a time: `time=...` among the options behind a file's name. A built-in
+/// scene, and a file for which a time is given already, stay as they are.
+pub fn at_time(what: &str, time: f64) -> String {
+    let (name, settings) = split_settings(what);
+    if !is_file(name) || settings.split(',').any(|setting| setting.starts_with("time=")) {
+        return what.to_owned();
+    }
+    let comma = if settings.is_empty() { "" } else { "," };
+    format!("{name}:{settings}{comma}time={time}")
+}
+
+/// The reader for a file, by its extension.
+fn reader_of(path: &Path) -> Option<Reader> {
+    let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
+    FORMATS.iter().find(|(known, _)| Some(*known) == extension.as_deref()).map(|(_, reader)| *reader)
+}
+
+/// True for a file, false for what can only be a built-in scene.
+fn is_file(name: &str) -> bool {
+    let path = Path::new(name);
+    reader_of(path).is_some() || name.contains(['/', std::path::MAIN_SEPARATOR]) || path.exists()
 }
 
 /// Name or path, and what follows its last colon if that is `key=value,...`; a file may have a colon in its name.

@@ -1,6 +1,6 @@
 //! Keyframes: what `k NAME { ... }` says, and where it puts things at a time.
 
-use super::spline::{Key, Spline, align};
+use super::spline::{Key, Spline, Turn};
 use crate::scene::text::{Fault, Words, quote_bytes};
 use glam::{DAffine3, DQuat, DVec3};
 
@@ -8,7 +8,7 @@ use glam::{DAffine3, DQuat, DVec3};
 #[derive(Default)]
 pub struct Keyframes {
     translations: Vec<Key<DVec3>>,
-    rotations: Vec<Key<DQuat>>,
+    rotations: Vec<Key<Turn>>,
     scales: Vec<Key<DVec3>>,
     /// Time and whether it is visible from then on.
     visibility: Vec<(f64, bool)>,
@@ -25,12 +25,11 @@ impl Keyframes {
         loop {
             match words.need("k")? {
                 b"}" => return Ok(keyframes),
-                b"transl" => keyframes.translations = keyframes.block(words, "transl", vector)?,
-                b"scale" => keyframes.scales = keyframes.block(words, "scale", vector)?,
-                b"rot" => {
-                    keyframes.rotations = keyframes.block(words, "rot", rotation)?;
-                    align(&mut keyframes.rotations);
+                b"transl" => {
+                    keyframes.translations = keyframes.block(words, "transl", |words, _| vector(words, "transl"))?
                 }
+                b"scale" => keyframes.scales = keyframes.block(words, "scale", |words, _| vector(words, "scale"))?,
+                b"rot" => keyframes.rotations = keyframes.block(words, "rot", turn)?,
                 b"visibility" => {
                     let count = words.count(4, "visibility")?;
                     for _ in 0..count {
@@ -55,13 +54,15 @@ impl Keyframes {
         &mut self,
         words: &mut Words,
         what: &str,
-        value: fn(&mut Words, &str) -> Result<T, Fault>,
+        value: fn(&mut Words, Option<&T>) -> Result<T, Fault>,
     ) -> Result<Vec<Key<T>>, Fault> {
         let count = words.count(14, what)?;
         let mut keys: Vec<Key<T>> = Vec::with_capacity(count);
         for _ in 0..count {
             let time = words.number(what)?;
-            let value = value(words, what)?;
+            // The curve never ends at the second key: it has no side to be turned to
+            let before = keys.get(1).and(keys.last());
+            let value = value(words, before.map(|before| &before.value))?;
             let [tension, continuity, bias] = words.numbers(what)?;
             if keys.last().is_none_or(|last| time >= last.time) {
                 keys.push(Key { time, value, tension, continuity, bias });
@@ -106,6 +107,10 @@ fn second<T>(keys: &[Key<T>]) -> Option<f64> {
 
 fn vector(words: &mut Words, what: &str) -> Result<DVec3, Fault> {
     words.numbers(what).map(DVec3::from)
+}
+
+fn turn(words: &mut Words, before: Option<&Turn>) -> Result<Turn, Fault> {
+    rotation(words, "rot").map(|given| Turn::new(given, before))
 }
 
 /// An axis and an angle in degrees; an axis of no length turns nothing.
