@@ -5,6 +5,7 @@
 
 pub mod aff;
 pub mod mesh_builder;
+pub mod mgf;
 pub mod normals;
 mod options;
 pub mod ply;
@@ -30,7 +31,8 @@ pub const MAX_ELEMENTS: usize = 1 << 27;
 pub type Reader = fn(&Path, &Options) -> Result<Scene>;
 
 /// Readers by file extension (lower case).
-pub const FORMATS: &[(&str, Reader)] = &[("ply", |path, _| ply::read(path)), ("aff", aff::read), ("nff", aff::read)];
+pub const FORMATS: &[(&str, Reader)] =
+    &[("ply", |path, _| ply::read(path)), ("aff", aff::read), ("nff", aff::read), ("mgf", mgf::read)];
 
 /// One triangle: three vertices and a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]

@@ -58,6 +58,7 @@ impl Syntax {
 }
 
 /// The words of a file, one after another. Lines end with LF, CRLF or CR.
+#[derive(Clone)]
 pub struct Words<'a> {
     bytes: &'a [u8],
     syntax: &'a Syntax,
