@@ -4,6 +4,7 @@ mod aff;
 mod broken_aff;
 mod broken_ply;
 mod built_in;
+mod mgf;
 mod mutation;
 mod ply;
 

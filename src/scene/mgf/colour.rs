@@ -73,6 +73,9 @@ impl Chromaticity {
 
     /// A black body at a temperature in kelvin (Planck's law).
     pub fn black_body(kelvin: f64) -> Option<Chromaticity> {
+        if kelvin <= 0.0 {
+            return None;
+        }
         // The second radiation constant, in nm K; relative to 560 nm, so that cold bodies do not vanish
         let exponent = |wavelength: f64| 1.438_777e7 / (wavelength * kelvin);
         let scale = exponent(560.0);

@@ -197,7 +197,7 @@ impl Reader {
             b"td" => material.through = share,
             b"ed" => material.emitted = share,
             b"rs" => (material.specular, material.roughness) = (share, roughness),
-            _ => material.transparent = amount,
+            _ => material.transparent = share,
         }
         self.material_set = false;
         Ok(())

@@ -36,14 +36,14 @@ pub struct Surface {
     /// Of `rs`: the RMS slope of its facets.
     pub roughness: f64,
     /// `ts`.
-    pub transparent: f64,
+    pub transparent: Share,
 }
 
 impl Surface {
     /// The scene's material.
     pub fn material(&self) -> Material {
         let most = DVec3::ONE;
-        let diffuse = (self.diffuse.rgb() + self.through.rgb()).min(most).as_vec3();
+        let diffuse = (self.diffuse.rgb() + self.through.rgb() + self.transparent.rgb() * 0.5).min(most).as_vec3();
         let specular = self.specular.rgb().min(most).as_vec3();
         // A lobe of this width has the roughness's slope; a perfect mirror would have none to be seen
         let exponent = if self.roughness > 0.0 { (2.0 / self.roughness.powi(2) - 2.0).clamp(1.0, 1e4) } else { 1e4 };

@@ -3,10 +3,11 @@
 //! An entity is a line. What it means depends on three contexts (vertex, colour, material), which may have names, and on
 //! the transform; `xf` with arrays goes through its lines once for each place.
 //!
-//! **Shading.** The diffuse colour is the reflectance `rd`, and what is let through diffusely (`td`) with it; the specular
+//! **Shading.** What lets light through is shown opaque, with a warning. The diffuse colour is the reflectance `rd`, with
+//! it what is let through diffusely (`td`) and half of what is let through straight (`ts`, or glass were black); the specular
 //! colour is `rs`. A surface whose roughness is at most [`materials::SMOOTH`] mirrors as much as it reflects specularly; the
 //! Phong exponent follows from the roughness. Ambient light is a tenth of the diffuse colour, and emitting surfaces show
-//! their own. What lets light through (`ts`) is shown opaque, with a warning; `ies`, `ir` and `sides` are passed over.
+//! their own. `ies`, `ir` and `sides` are passed over.
 //!
 //! **Lights.** Emitting surfaces become point lights, see [`lights`].
 //!
@@ -38,7 +39,7 @@ pub const SEGMENTS: u32 = 20;
 const MAX_DEPTH: usize = 100;
 
 /// Words that may be gone through in all, repetitions counted: so many in any case, and so many more per byte of the files.
-const WORDS: usize = 8_000_000;
+const WORDS: usize = 2_000_000;
 const WORDS_PER_BYTE: usize = 16;
 
 /// A comment is an entity here: `#` may stand within names.

@@ -12,7 +12,7 @@ impl Reader {
         if !self.material_set {
             self.material_set = true;
             let material = *self.materials.current();
-            if material.transparent > 0.0 {
+            if material.transparent.amount + material.through.amount > 0.0 {
                 self.mesh.warnings.add("transparent material: shown opaque");
             }
             self.mesh.set_material(material.material());
