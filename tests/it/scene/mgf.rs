@@ -30,8 +30,8 @@ fn every_shape_gives_the_triangles_of_the_formats_library() {
         ("prism a b c d 1", 12, 24),
         ("prism a b c d -1", 12, 24),
         ("o thing\nf a b c\no\nf a c d", 2, 6),
-        ("xf -a 3 -t 1 0 0\nf a b c\nxf", 3, 9),
-        ("xf -t 1 0 0\nxf -a 2 -rz 90 -a 3 -t 0 0 1\n# xf\nf a b c\nxf\nxf\nf a b c", 7, 21),
+        ("xf -a 3 -t 5 0 0\nf a b c\nxf", 3, 9),
+        ("xf -t 5 0 0\nxf -t 3 0 0 -a 2 -rz 90 -a 3 -t 0 0 1\n# xf\nf a b c\nxf\nxf\nf a b c", 7, 21),
         ("xf -a 0\nxf -s 2\nsph a 1\nxf\nxf\nf a b c", 1, 3),
     ] {
         let scene = mgf(&format!("{POINTS}{text}"));
