@@ -54,8 +54,10 @@ pub struct Subject<'s> {
     pub scene: &'s Scene,
     /// For the record.
     pub record: SceneRecord,
-    /// By configuration, in the plan's order.
-    pub paths: Vec<(Config, Path)>,
+    /// As the plan names it.
+    pub what: String,
+    /// By configuration and number of frames.
+    pub paths: Vec<(Config, Option<usize>, Path)>,
     /// Knows the right answers.
     pub verifier: Verifier<'s>,
     /// Image of the first structure that was measured, by configuration, size and rays: its name and hash.
@@ -92,7 +94,7 @@ impl Checked {
 
 /// A record with everything that is known before anything is measured.
 pub fn blank(plan: &Plan, subject: &Subject, selection: &Selection, path: usize, size: Size) -> ConfigurationRecord {
-    let (config, path) = &subject.paths[path];
+    let (config, _, path) = &subject.paths[path];
     ConfigurationRecord {
         scene: subject.record.clone(),
         camera_path: path.record.clone(),
@@ -155,7 +157,7 @@ pub fn measure(
 
     // On the small image, with the twin, once for all sizes.
     if !candidate.small.contains_key(&config) {
-        let last = subject.paths[path].1.views.len() / 2;
+        let last = subject.paths[path].2.views.len() / 2;
         let frames = if last == 0 { vec![0] } else { vec![0, last] };
         let mut checked = Checked::default();
         for frame in frames {
@@ -192,7 +194,7 @@ pub fn measure(
     }
 
     // Count.
-    let views = &subject.paths[path].1.views;
+    let views = &subject.paths[path].2.views;
     let work = context.plan.work(config, size, views) / (context.plan.passes as u64 + 1);
     let start = Instant::now();
     let per_frame = work / views.len() as u64;
@@ -236,7 +238,7 @@ fn check(
     checked: &mut Checked,
 ) -> Result<Verdict> {
     context.check_interrupt()?;
-    let (config, path) = &subject.paths[path];
+    let (config, _, path) = &subject.paths[path];
     let twin = (size == SMALL).then_some(&candidate.built.structure);
     let method = candidate.selection.method();
     let start = Instant::now();

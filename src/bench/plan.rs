@@ -45,18 +45,10 @@ pub struct Request {
 pub struct Plan {
     /// The preset that it began with.
     pub preset: String,
-    /// What to load, in this order.
-    pub scenes: Vec<String>,
+    /// What is measured, in this order.
+    pub parts: Vec<Part>,
     /// Camera path for everything; otherwise each scene and configuration has its own.
     pub camera_path: Option<String>,
-    /// Structures, each once.
-    pub selections: Vec<Selection>,
-    /// Ray configurations, each once.
-    pub configs: Vec<Config>,
-    /// Image sizes, each once.
-    pub sizes: Vec<Size>,
-    /// Frames that each path is thinned to.
-    pub frames: Option<usize>,
     /// Timed passes.
     pub passes: usize,
     /// Untimed frames before the first pass.
@@ -65,6 +57,32 @@ pub struct Plan {
     pub scenes_folder: Option<PathBuf>,
     /// What the preset names and this machine does not have, in words.
     pub skipped: Vec<String>,
+}
+
+/// Every structure x configuration x size on one scene.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// What to load.
+    pub scene: String,
+    /// Structures, each once.
+    pub selections: Vec<Selection>,
+    /// Ray configurations, each once.
+    pub configs: Vec<Config>,
+    /// Image sizes, each once.
+    pub sizes: Vec<Size>,
+    /// Frames that each path is thinned to.
+    pub frames: Option<usize>,
+}
+
+/// One row of a sweep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Task {
+    /// Ray configuration.
+    pub config: Config,
+    /// Image size.
+    pub size: Size,
+    /// Frames that the path is thinned to.
+    pub frames: Option<usize>,
 }
 
 /// A camera path with its frames.
@@ -83,30 +101,55 @@ impl Plan {
     pub fn new(request: &Request) -> Result<Plan> {
         let preset = Preset::load(&request.preset)?;
         let mut skipped = Vec::new();
-        let scenes = if request.scenes.is_empty() {
-            let mut scenes = Vec::new();
-            for PresetScene { scene } in preset.scene {
+        let mut wanted = Vec::new();
+        for scene in &request.scenes {
+            wanted.push(PresetScene {
+                scene: scene.clone(),
+                structures: None,
+                configs: None,
+                resolutions: None,
+                frames: None,
+            });
+        }
+        if request.scenes.is_empty() {
+            for part in preset.scene {
                 // What is absent is named, with where to get it, and left out; nothing takes its place.
-                let entry = catalogue::find(scene.split(':').next().unwrap_or(&scene));
+                let entry = catalogue::find(part.scene.split(':').next().unwrap_or(&part.scene));
                 match entry.map(|entry| entry.path_in(request.scenes_folder.as_deref())) {
                     Some(Err(absent)) => skipped.push(absent.to_string()),
-                    _ => scenes.push(scene),
+                    _ => wanted.push(part),
                 }
             }
-            scenes
-        } else {
-            request.scenes.clone()
-        };
-        if scenes.is_empty() {
+            skipped = once(skipped.into_iter());
+        }
+        if wanted.is_empty() {
             let problem = format!("none of the scenes of preset {} is here: {}", preset.name, skipped.join("; "));
             return Err(Error::argument("--preset", problem, "or name a scene with --scene"));
         }
-        let or = |given: &[String], preset: &[String]| if given.is_empty() { preset.to_vec() } else { given.to_vec() };
-        let frames = request.frames.or(preset.frames);
+        let choose = |given: &[String], own: &Option<Vec<String>>, preset: &[String]| match (given, own) {
+            ([], Some(own)) => own.clone(),
+            ([], None) => preset.to_vec(),
+            (given, _) => given.to_vec(),
+        };
+        let part = |part: &PresetScene| {
+            let structures = choose(&request.structures, &part.structures, &preset.structures);
+            let configs = choose(&request.configs, &part.configs, &preset.configs);
+            let resolutions = choose(&request.resolutions, &part.resolutions, &preset.resolutions);
+            Ok(Part {
+                scene: part.scene.clone(),
+                selections: parse_list(&structures, Selection::parse)?,
+                configs: parse_list(&configs, parse_config)?,
+                sizes: parse_list(&resolutions, parse_size)?,
+                frames: request.frames.or(part.frames).or(preset.frames),
+            })
+        };
+        let parts = wanted.iter().map(part).collect::<Result<Vec<Part>>>()?;
+        let frames = parts.iter().filter_map(|part| part.frames);
+        let (least, most) = frames.fold((1, 1), |(least, most), n| (n.min(least), n.max(most)));
         let (passes, warmup_frames) =
             (request.passes.unwrap_or(preset.passes), request.warmup_frames.unwrap_or(preset.warmup_frames));
         for (flag, value, least) in
-            [("--frames", frames.unwrap_or(1), 1), ("--passes", passes, 1), ("--warmup", warmup_frames, 0)]
+            [("--frames", least, 1), ("--frames", most, 1), ("--passes", passes, 1), ("--warmup", warmup_frames, 0)]
         {
             if !(least..=MAX_REPEATS).contains(&value) {
                 let mend = format!("give {least} to {MAX_REPEATS}");
@@ -114,12 +157,8 @@ impl Plan {
             }
         }
         Ok(Plan {
-            scenes,
+            parts,
             camera_path: request.camera_path.clone(),
-            selections: parse_list(&or(&request.structures, &preset.structures), Selection::parse)?,
-            configs: parse_list(&or(&request.configs, &preset.configs), parse_config)?,
-            sizes: parse_list(&or(&request.resolutions, &preset.resolutions), parse_size)?,
-            frames,
             passes,
             warmup_frames,
             scenes_folder: request.scenes_folder.clone(),
@@ -133,7 +172,7 @@ impl Plan {
     /// # Errors
     /// [`Error::Input`].
     pub fn check_device(&self, device: &DeviceInfo) -> Result<()> {
-        self.sizes.iter().try_for_each(|&size| check_size(size, device))
+        self.parts.iter().flat_map(|part| &part.sizes).try_for_each(|&size| check_size(size, device))
     }
 
     /// Loads one of the plan's scenes.
@@ -150,18 +189,42 @@ impl Plan {
     /// # Errors
     /// [`Error::Input`] of the scene or path.
     pub fn survey(&self) -> Result<Vec<u64>> {
-        let rays_of = |what: &String| {
+        let rays_of = |what: &str| {
             let scene = self.load(what)?;
             let mut rays = 0;
-            for &config in &self.configs {
-                let path = self.path(&scene, config)?;
-                for &size in &self.sizes {
-                    rays += self.work(config, size, &path.views) * self.selections.len() as u64;
+            for selection in self.selections(what) {
+                for Task { config, size, frames } in self.tasks(what, selection) {
+                    rays += self.work(config, size, &self.path(&scene, config, frames)?.views);
                 }
             }
             Ok(rays)
         };
-        self.scenes.iter().map(rays_of).collect()
+        self.scenes().into_iter().map(rays_of).collect()
+    }
+
+    /// The scenes, each once.
+    pub fn scenes(&self) -> Vec<&str> {
+        once(self.parts.iter().map(|part| part.scene.as_str()))
+    }
+
+    /// The structures that are measured on a scene, each once.
+    pub fn selections(&self, what: &str) -> Vec<&Selection> {
+        once(self.parts.iter().filter(|part| part.scene == what).flat_map(|part| &part.selections))
+    }
+
+    /// The rows of a structure on a scene: of equal configurations and sizes, the first.
+    pub fn tasks(&self, what: &str, selection: &Selection) -> Vec<Task> {
+        let mut tasks: Vec<Task> = Vec::new();
+        for part in self.parts.iter().filter(|part| part.scene == what && part.selections.contains(selection)) {
+            for &config in &part.configs {
+                for &size in &part.sizes {
+                    if !tasks.iter().any(|task| task.config == config && task.size == size) {
+                        tasks.push(Task { config, size, frames: part.frames });
+                    }
+                }
+            }
+        }
+        tasks
     }
 
     /// Rays that measuring one configuration traces, roughly: the passes and the counting of every frame.
@@ -176,36 +239,52 @@ impl Plan {
         size.pixels() as u64 * views.len() as u64 * (self.passes as u64 + 1) * per_pixel / 2
     }
 
-    /// The camera path of a scene and a configuration.
+    /// The camera path of a scene and a configuration, thinned to `frames`.
     ///
     /// # Errors
     /// [`Error::Input`] of the path.
-    pub fn path(&self, scene: &Scene, config: Config) -> Result<Path> {
+    pub fn path(&self, scene: &Scene, config: Config, frames: Option<usize>) -> Result<Path> {
         let path = match &self.camera_path {
             Some(name) => CameraPath::load(name)?,
             None => CameraPath::for_scene(scene, config),
         };
         let record = PathRecord { name: path.name.clone(), hash: path.content_hash() };
-        Ok(Path { record, views: path.views(scene, self.frames)? })
+        Ok(Path { record, views: path.views(scene, frames)? })
     }
 
     /// Number of rows.
     pub fn configurations(&self) -> usize {
-        self.scenes.len() * self.selections.len() * self.configs.len() * self.sizes.len()
+        let rows =
+            |what| self.selections(what).into_iter().map(|selection| self.tasks(what, selection).len()).sum::<usize>();
+        self.scenes().into_iter().map(rows).sum()
     }
 
     /// For the provenance.
     pub fn record(&self) -> PlanRecord {
         PlanRecord {
             preset: self.preset.clone(),
-            scenes: self.scenes.clone(),
-            structures: self.selections.iter().map(|s| format!("{} ({})", s.name(), s.variant())).collect(),
+            scenes: self.scenes().into_iter().map(str::to_owned).collect(),
+            structures: once(self.parts.iter().flat_map(|part| &part.selections))
+                .into_iter()
+                .map(|s| format!("{} ({})", s.name(), s.variant()))
+                .collect(),
             configurations: self.configurations(),
             passes: self.passes,
             warmup_frames: self.warmup_frames,
             skipped: self.skipped.clone(),
         }
     }
+}
+
+/// Each item once, in the order of first appearance.
+fn once<T: PartialEq>(items: impl Iterator<Item = T>) -> Vec<T> {
+    let mut seen = Vec::new();
+    items.for_each(|item| {
+        if !seen.contains(&item) {
+            seen.push(item);
+        }
+    });
+    seen
 }
 
 /// A scene as it stands in records.

@@ -5,8 +5,11 @@ use serde::Deserialize;
 use std::path::Path;
 
 /// Names and contents of the presets that the program brings.
-const EMBEDDED: [(&str, &str); 2] =
-    [("quick", include_str!("../../presets/quick.toml")), ("thesis", include_str!("../../presets/thesis.toml"))];
+const EMBEDDED: [(&str, &str); 3] = [
+    ("quick", include_str!("../../presets/quick.toml")),
+    ("thesis", include_str!("../../presets/thesis.toml")),
+    ("thesis-lite", include_str!("../../presets/thesis-lite.toml")),
+];
 
 /// A sweep as a file describes it; every value as a user would type it.
 #[derive(Clone, Debug, Deserialize)]
@@ -31,12 +34,21 @@ pub struct Preset {
     pub scene: Vec<PresetScene>,
 }
 
-/// A scene of a preset.
+/// A scene of a preset; whatever it sets of its own goes before what the preset says. A scene may stand there several
+/// times, for measurements that are not every structure x configuration x size: what is measured once is not repeated.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PresetScene {
     /// A built-in scene with its parameters, a scene of the catalogue, or a file.
     pub scene: String,
+    /// As [`Preset::structures`].
+    pub structures: Option<Vec<String>>,
+    /// As [`Preset::configs`].
+    pub configs: Option<Vec<String>>,
+    /// As [`Preset::resolutions`].
+    pub resolutions: Option<Vec<String>>,
+    /// As [`Preset::frames`].
+    pub frames: Option<usize>,
 }
 
 impl Preset {

@@ -3,17 +3,16 @@
 
 use super::configuration::{self, Candidate, Context, Subject};
 use super::environment;
-use super::plan::{self, Plan};
+use super::plan::{self, Path, Plan, Task};
 use super::verify::Verifier;
 use crate::accel::{Built, Selection};
-use crate::backend::{Backend, Interrupted, Prepared, Size};
+use crate::backend::{Backend, Config, Interrupted, Prepared, Size};
 use crate::error::{Error, Result};
 use crate::results::journal::{self, Journal, JournalWriter};
 use crate::results::record::{ConfigurationRecord, End, Failure, Memory, Provenance, Record, SCHEMA, StructureRecord};
 use crate::results::summary::Run;
 use crate::scene::Scene;
 use std::collections::{HashMap, VecDeque};
-use std::path::Path;
 
 /// An opened device, and why it was taken.
 pub struct Opened {
@@ -42,7 +41,7 @@ pub struct Job<'a> {
     /// What to measure.
     pub plan: &'a Plan,
     /// Folder of the run; new or empty.
-    pub out: &'a Path,
+    pub out: &'a std::path::Path,
     /// Threads for building, 0 for all.
     pub threads: usize,
     /// Command line.
@@ -95,7 +94,7 @@ pub fn run(job: Job) -> Result<Outcome> {
         open: job.open,
         journal: &mut journal,
     };
-    let ended = plan.scenes.iter().try_for_each(|what| sweep.scene(what));
+    let ended = plan.scenes().into_iter().try_for_each(|what| sweep.scene(what));
     let closed = journal.write(&Record::End(End {
         ended: environment::now(),
         interrupted: matches!(ended, Err(Error::Interrupted)),
@@ -109,7 +108,7 @@ pub fn run(job: Job) -> Result<Outcome> {
 }
 
 /// Writes the files that are derived from a run's journal.
-fn derive(out: &Path) -> Result<Outcome> {
+fn derive(out: &std::path::Path) -> Result<Outcome> {
     let journal = Journal::read(&out.join(journal::FILE_NAME))?;
     let run = Run::new(&journal);
     run.write(out)?;
@@ -142,19 +141,25 @@ impl Sweep<'_, '_> {
         for warning in &scene.warnings {
             self.say(Event::Note(format!("{}: {warning}", scene.name)));
         }
-        let paths: Result<Vec<_>> = plan.configs.iter().map(|&c| Ok((c, plan.path(&scene, c)?))).collect();
+        let mut paths: Vec<(Config, Option<usize>, Path)> = Vec::new();
+        for task in plan.selections(what).into_iter().flat_map(|selection| plan.tasks(what, selection)) {
+            if !paths.iter().any(|(config, frames, _)| (*config, *frames) == (task.config, task.frames)) {
+                paths.push((task.config, task.frames, plan.path(&scene, task.config, task.frames)?));
+            }
+        }
         // The reference is traced through this tree, and confirmed by brute force (see `verify`).
         let reference_selection = Selection::parse("bvh")?;
         let reference = reference_selection.build(&scene, self.threads)?;
         let mut subject = Subject {
             scene: &scene,
             record: plan::scene_record(&scene),
-            paths: paths?,
+            what: what.to_owned(),
+            paths,
             verifier: Verifier::new(&scene, &reference.structure)?,
             images: HashMap::new(),
         };
         // Each distinct tree is built once, serves all traversals over it, and is freed before the next is built.
-        let mut waiting: Vec<&Selection> = plan.selections.iter().collect();
+        let mut waiting = plan.selections(what);
         while let Some(&first) = waiting.first() {
             self.context.check_interrupt()?;
             let (same, others): (Vec<_>, Vec<_>) =
@@ -170,7 +175,7 @@ impl Sweep<'_, '_> {
                 // What cannot be built for this scene is no reason to leave the others unmeasured.
                 Err(Error::Device(message)) => {
                     for selection in same {
-                        for (path, size) in configurations(plan, &subject) {
+                        for (path, size) in configurations(plan, &subject, selection) {
                             self.unable(&subject, selection, None, path, size, &message)?;
                         }
                     }
@@ -190,7 +195,7 @@ impl Sweep<'_, '_> {
     /// and is opened again for the next.
     fn structure(&mut self, subject: &mut Subject, selection: &Selection, built: &Built) -> Result<()> {
         let scene = subject.scene;
-        let mut waiting = VecDeque::from(configurations(self.context.plan, subject));
+        let mut waiting = VecDeque::from(configurations(self.context.plan, subject, selection));
         let mut candidate = Candidate { selection, built, memory: Memory::default(), small: HashMap::new() };
         let mut recorded = false;
         while !waiting.is_empty() {
@@ -300,10 +305,14 @@ impl Sweep<'_, '_> {
     }
 }
 
-/// All configurations of a scene: which path, which size.
-fn configurations(plan: &Plan, subject: &Subject) -> Vec<(usize, Size)> {
-    let of_path = |path| plan.sizes.iter().map(move |&size| (path, size));
-    (0..subject.paths.len()).flat_map(of_path).collect()
+/// All rows of a structure on a scene: which path, which size.
+fn configurations(plan: &Plan, subject: &Subject, selection: &Selection) -> Vec<(usize, Size)> {
+    let path_of = |task: &Task| {
+        let same =
+            |(config, frames, _): &(Config, Option<usize>, Path)| (*config, *frames) == (task.config, task.frames);
+        subject.paths.iter().position(same)
+    };
+    plan.tasks(&subject.what, selection).iter().filter_map(|task| Some((path_of(task)?, task.size))).collect()
 }
 
 /// Sizes: as allocated on the device (geometry, structure) where it was, in main memory otherwise.

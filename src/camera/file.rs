@@ -2,8 +2,10 @@
 
 use super::orbit::{LightOrbit, Orbit};
 use super::path::{CameraPath, Kind, PathLight};
+use super::recorded::Recorded;
 use super::walk::{Aim, Key, Walk};
 use crate::error::{Error, Result};
+use crate::scene::Pose;
 use glam::Vec3;
 use serde::Deserialize;
 use std::ops::Range;
@@ -18,7 +20,6 @@ const MAX_FRAMES: usize = 1_000_000;
 struct File {
     kind: Spanned<String>,
     #[serde(default)]
-    #[allow(dead_code)] // For people who read the file.
     description: String,
     frames: Option<Spanned<usize>>,
     field_of_view: Option<Spanned<f32>>,
@@ -36,6 +37,8 @@ struct File {
     // Walks.
     relative: Option<Spanned<bool>>,
     keys: Option<Vec<Spanned<FileKey>>>,
+    // Recorded frames: time, position, direction, up.
+    poses: Option<Spanned<Vec<Spanned<[f64; 10]>>>>,
 }
 
 #[derive(Deserialize)]
@@ -128,7 +131,10 @@ pub(super) fn parse(name: &str, place: &str, text: &str) -> Result<CameraPath> {
         let problem = e.message().lines().collect::<Vec<_>>().join(" ");
         source.fault(e.span().unwrap_or(0..0), problem, "camera-paths/README.md describes the format")
     })?;
-    let frames = match &file.frames {
+    if file.kind.get_ref() != "frames" {
+        source.refuse(&file.poses, "poses", file.kind.get_ref())?;
+    }
+    let mut frames = match &file.frames {
         None => 400,
         Some(frames) if (1..=MAX_FRAMES).contains(frames.get_ref()) => *frames.get_ref(),
         Some(frames) => {
@@ -159,14 +165,22 @@ pub(super) fn parse(name: &str, place: &str, text: &str) -> Result<CameraPath> {
             })
         }
         "walk" => {
-            for (value, key) in [(&file.distance, "distance"), (&file.height, "height"), (&file.start, "start")] {
-                source.refuse(value, key, "walk")?;
-            }
+            refuse_orbit(&source, &file, "walk")?;
             refuse_light(&source, &file, "walk")?;
             Kind::Walk(walk(&source, &file, up)?)
         }
+        "frames" => {
+            refuse_walk(&source, &file, "frames")?;
+            refuse_orbit(&source, &file, "frames")?;
+            refuse_light(&source, &file, "frames")?;
+            source.refuse(&file.frames, "frames", "frames: each pose is one")?;
+            source.refuse(&file.up, "up", "frames: each pose has its own")?;
+            let recorded = recorded(&source, &file)?;
+            frames = recorded.poses.len();
+            Kind::Recorded(recorded)
+        }
         other => {
-            let mend = "kinds are orbit, light-orbit, walk";
+            let mend = "kinds are orbit, light-orbit, walk, frames";
             return Err(source.fault(file.kind.span(), format!("kind {other:?} is unknown"), mend));
         }
     };
@@ -179,6 +193,7 @@ pub(super) fn parse(name: &str, place: &str, text: &str) -> Result<CameraPath> {
     });
     Ok(CameraPath {
         name: name.to_owned(),
+        description: file.description,
         frames,
         field_of_view,
         up,
@@ -196,6 +211,12 @@ fn refuse_walk(source: &Source, file: &File, kind: &str) -> Result<()> {
     source.refuse(&file.relative, "relative", kind)
 }
 
+fn refuse_orbit(source: &Source, file: &File, kind: &str) -> Result<()> {
+    source.refuse(&file.distance, "distance", kind)?;
+    source.refuse(&file.height, "height", kind)?;
+    source.refuse(&file.start, "start", kind)
+}
+
 fn refuse_light(source: &Source, file: &File, kind: &str) -> Result<()> {
     source.refuse(&file.light_distance, "light_distance", kind)?;
     source.refuse(&file.light_height, "light_height", kind)?;
@@ -210,6 +231,33 @@ fn orbit(source: &Source, file: &File) -> Result<Orbit> {
     };
     let height = source.number(&file.height, "height", 0.5, -1e6..1e6)?;
     Ok(Orbit { distance, height, start: source.number(&file.start, "start", 0.0, -1e6..1e6)? })
+}
+
+fn recorded(source: &Source, file: &File) -> Result<Recorded> {
+    let rows = file.poses.as_ref().map(Spanned::get_ref).filter(|rows| (1..=MAX_FRAMES).contains(&rows.len()));
+    let Some(rows) = rows else {
+        let problem = "recorded frames need `poses`, a row for each";
+        let mend = format!("give 1 to {MAX_FRAMES} rows of time, position, direction and up: ten numbers");
+        return Err(source.fault(file.kind.span(), problem, mend));
+    };
+    let pose = |row: &Spanned<[f64; 10]>| {
+        let vector = |at: usize| Vec3::from([0, 1, 2].map(|i| row.get_ref()[at + i] as f32));
+        let fault = |problem: &str| source.fault(row.span(), problem, "repair the row");
+        // What is a unit vector stays as it is, to the bit
+        let unit = |v: Vec3| if v.is_normalized() { v } else { v.normalize_or_zero() };
+        let pose =
+            Pose { time: row.get_ref()[0], position: vector(1), direction: unit(vector(4)), up: unit(vector(7)) };
+        let sound = pose.time.is_finite() && pose.position.is_finite();
+        if !sound || pose.position.abs().max_element() > MAX_LENGTH {
+            return Err(fault("time or position is not finite or too large"));
+        }
+        // Zero and what is not finite fail here as well
+        if !(pose.direction.cross(pose.up).length() >= 1e-3) {
+            return Err(fault("direction or up is zero, or the camera looks along its up vector"));
+        }
+        Ok(pose)
+    };
+    Ok(Recorded { poses: rows.iter().map(pose).collect::<Result<_>>()? })
 }
 
 fn walk(source: &Source, file: &File, up: Vec3) -> Result<Walk> {

@@ -3,11 +3,13 @@
 mod file;
 mod orbit;
 mod path;
+mod recorded;
 mod walk;
 
 use crate::scene::Light;
 use glam::Vec3;
-pub use path::{CameraPath, names};
+pub use path::{CameraPath, descriptions, names};
+pub use recorded::{to_csv, to_toml};
 
 /// A pinhole camera.
 #[derive(Clone, Copy, Debug, PartialEq)]

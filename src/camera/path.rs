@@ -2,12 +2,13 @@
 
 use super::file;
 use super::orbit::{LightOrbit, Orbit};
+use super::recorded::Recorded;
 use super::walk::Walk;
 use super::{Camera, View};
 use crate::config::Config;
 use crate::error::{Error, Result};
 use crate::math::Aabb;
-use crate::scene::{Light, Scene, did_you_mean};
+use crate::scene::{Light, Scene, SceneCamera, did_you_mean};
 use glam::Vec3;
 use std::path::Path;
 
@@ -19,6 +20,7 @@ const EMBEDDED: &[(&str, &str)] = &[
     ("sphereflake", include_str!("../../camera-paths/sphereflake.toml")),
     ("stadium", include_str!("../../camera-paths/stadium.toml")),
     ("hall", include_str!("../../camera-paths/hall.toml")),
+    ("inside", include_str!("../../camera-paths/inside.toml")),
     ("room", include_str!("../../camera-paths/room.toml")),
     ("conference-obj", include_str!("../../camera-paths/conference-obj.toml")),
     ("sponza", include_str!("../../camera-paths/sponza.toml")),
@@ -29,11 +31,19 @@ pub fn names() -> Vec<&'static str> {
     EMBEDDED.iter().map(|(name, _)| *name).collect()
 }
 
+/// Name, number of frames and description of the embedded paths.
+pub fn descriptions() -> Vec<(String, usize, String)> {
+    let paths = names().into_iter().filter_map(|name| CameraPath::load(name).ok());
+    paths.map(|path| (path.name, path.frames, path.description)).collect()
+}
+
 /// A path as read from a file; [`CameraPath::views`] fits it to a scene.
 #[derive(Clone, Debug)]
 pub struct CameraPath {
     /// The embedded path's name, or the file's stem.
     pub name: String,
+    /// For people.
+    pub description: String,
     /// Number of frames of the whole path.
     pub frames: usize,
     /// Vertical field of view in degrees.
@@ -55,6 +65,7 @@ pub(super) enum Kind {
     Orbit(Orbit),
     LightOrbit(LightOrbit),
     Walk(Walk),
+    Recorded(Recorded),
 }
 
 /// A light of the path's own.
@@ -94,12 +105,35 @@ impl CameraPath {
         }
     }
 
-    /// The path that fits scene and ray configuration if the user names none: the scene's own; otherwise the thesis's
-    /// method for single objects (SPEC section 8), the camera's turn for P and the light's turn where there are shadows.
+    /// The path that fits scene and ray configuration if the user names none: the camera that the scene's file brings;
+    /// the scene's own path; otherwise the thesis's method for single objects (SPEC section 8), the camera's turn for P
+    /// and the light's turn where there are shadows.
     pub fn for_scene(scene: &Scene, config: Config) -> CameraPath {
+        if let Some(camera) = scene.camera.as_ref().filter(|camera| !camera.frames.is_empty()) {
+            return CameraPath::of_file(&scene.name, camera);
+        }
         let default = if config.shadows() { "light-orbit" } else { "orbit" };
         let own = scene.camera_path.as_deref().and_then(|name| CameraPath::load(name).ok());
         own.unwrap_or_else(|| CameraPath::load(default).expect("an embedded path is sound: a test loads each"))
+    }
+
+    /// The camera that a scene's file brings. A still one is a path of one frame.
+    fn of_file(scene: &str, camera: &SceneCamera) -> CameraPath {
+        // Without the options that may stand behind the file's name
+        let name = scene.split(':').next().unwrap_or_default().to_owned();
+        let description = format!("The camera of the scene file {name}");
+        let hash = blake3::hash(super::to_toml(camera, &description).as_bytes()).to_hex().to_string();
+        CameraPath {
+            place: name.clone(),
+            name,
+            description,
+            frames: camera.frames.len(),
+            field_of_view: camera.field_of_view,
+            up: Vec3::Y,
+            kind: Kind::Recorded(Recorded { poses: camera.frames.clone() }),
+            lights: Vec::new(),
+            hash,
+        }
     }
 
     /// BLAKE3 of the file's text, hexadecimal.
@@ -108,12 +142,13 @@ impl CameraPath {
     }
 
     /// The frames of the path in this scene: all, or thinned evenly to `frames`, of which number i is the path's number
-    /// `round(i * all / frames)`; the first is always there.
+    /// `round(i * all / frames)`; the first is always there. A recorded camera that stands still has one frame, however
+    /// many are wanted: more of the same would show nothing else.
     ///
     /// # Errors
     /// [`Error::Input`] if there are fewer frames than wanted, or the path does not work in this scene.
     pub fn views(&self, scene: &Scene, frames: Option<usize>) -> Result<Vec<View>> {
-        let wanted = frames.unwrap_or(self.frames);
+        let wanted = frames.map_or(self.frames, |frames| if self.stands_still() { frames.min(1) } else { frames });
         if wanted == 0 || wanted > self.frames {
             return Err(Error::argument(
                 &self.place,
@@ -126,7 +161,7 @@ impl CameraPath {
             let problem = format!("scene {} is a single point: no camera can look at it", scene.name);
             return Err(Error::argument(&self.place, problem, "give a scene with an extent"));
         }
-        let frame = |i: usize| (2 * i * self.frames + wanted) / (2 * wanted);
+        let frame = |i| self.thinned(i, wanted);
         match &self.kind {
             Kind::Orbit(orbit) => {
                 let fitted = orbit.fit(scene, bounds, self.up, self.field_of_view);
@@ -138,6 +173,9 @@ impl CameraPath {
                 self.check_camera(frame(0), &camera)?;
                 Ok((0..wanted).map(|i| View { camera, lights: light(i) }).collect())
             }
+            Kind::Recorded(recorded) => (0..wanted)
+                .map(|i| self.view(scene, bounds, frame(i), recorded.camera(frame(i), self.field_of_view)))
+                .collect(),
             Kind::Walk(walk) => (0..wanted)
                 .map(|i| {
                     // The last frame stands at the last key.
@@ -146,6 +184,24 @@ impl CameraPath {
                     self.view(scene, bounds, frame(i), camera)
                 })
                 .collect(),
+        }
+    }
+
+    fn stands_still(&self) -> bool {
+        matches!(&self.kind, Kind::Recorded(recorded) if recorded.poses.len() == 1)
+    }
+
+    /// The path's frame that is number `i` of `wanted`.
+    fn thinned(&self, i: usize, wanted: usize) -> usize {
+        (2 * i * self.frames + wanted) / (2 * wanted)
+    }
+
+    /// The time of frame `i` of `wanted`: the recorded one, or the frame's number in the whole path.
+    pub(super) fn time(&self, i: usize, wanted: usize) -> f64 {
+        let frame = self.thinned(i, wanted);
+        match &self.kind {
+            Kind::Recorded(recorded) => recorded.poses[frame].time,
+            _ => frame as f64,
         }
     }
 

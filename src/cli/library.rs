@@ -1,4 +1,4 @@
-//! The folder of scenes: a flag that every command with `--scene` has.
+//! The folder of scenes and their time: flags that every command with `--scene` has.
 
 use super::output;
 use crate::error::Result;
@@ -6,12 +6,15 @@ use crate::scene::{self, Scene};
 use clap::Args;
 use std::path::PathBuf;
 
-/// Where the catalogue's scenes lie.
+/// Where the catalogue's scenes lie, and when they are looked at.
 #[derive(Args, Debug)]
 pub struct LibraryArguments {
     /// Folder with the files of the catalogue's scenes [default: the variable RTBENCH_SCENES]
     #[arg(long, value_name = "FOLDER")]
     scenes_dir: Option<PathBuf>,
+    /// Moment at which the moving geometry of scene files is frozen, as FILE:time=T
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    scene_time: Option<f64>,
 }
 
 impl LibraryArguments {
@@ -20,12 +23,17 @@ impl LibraryArguments {
         self.scenes_dir.clone().or_else(|| std::env::var_os("RTBENCH_SCENES").map(PathBuf::from))
     }
 
+    /// The scene at the moment that was asked for, if one was.
+    pub fn at_time(&self, what: &str) -> String {
+        self.scene_time.map_or_else(|| what.to_owned(), |time| scene::at_time(what, time))
+    }
+
     /// Loads a scene and says on standard error what its reader wants the user to know.
     ///
     /// # Errors
     /// The scene's.
     pub fn load(&self, what: &str) -> Result<Scene> {
-        let scene = scene::load_in(what, self.folder().as_deref())?;
+        let scene = scene::load_in(&self.at_time(what), self.folder().as_deref())?;
         for warning in &scene.warnings {
             output::note(&format!("{}: {warning}", scene.name));
         }

@@ -4,6 +4,7 @@
 //! wrong, 2 something could not run, 130 Ctrl-C.
 
 mod build;
+mod camera_path;
 mod claims;
 mod completions;
 mod device;
@@ -57,6 +58,8 @@ enum Command {
     Trace(trace::Arguments),
     #[command(subcommand)]
     Scenes(scenes::Command),
+    #[command(subcommand)]
+    CameraPath(camera_path::Command),
     Structures(structures::Arguments),
     Devices(devices::Arguments),
     Completions(completions::Arguments),
@@ -89,6 +92,7 @@ fn run(command: Command) -> Result<ExitCode> {
         Command::Build(arguments) => build::run(&arguments),
         Command::Trace(arguments) => trace::run(&arguments).map(done),
         Command::Scenes(command) => scenes::run(&command).map(done),
+        Command::CameraPath(command) => camera_path::run(&command).map(done),
         Command::Structures(arguments) => structures::run(&arguments).map(done),
         Command::Devices(arguments) => devices::run(&arguments).map(done),
         Command::Completions(arguments) => completions::run(&arguments).map(done),

@@ -84,7 +84,7 @@ Ctrl-C ends a sweep in order: what was measured is kept.";
 /// # Errors
 /// What could not run; wrong answers are the exit code 1.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
-    let plan = Plan::new(&Request {
+    let mut plan = Plan::new(&Request {
         preset: arguments.preset.clone(),
         scenes: arguments.scene.clone(),
         camera_path: arguments.camera_path.clone(),
@@ -96,6 +96,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         warmup_frames: arguments.warmup,
         scenes_folder: arguments.library.folder(),
     })?;
+    plan.parts.iter_mut().for_each(|part| part.scene = arguments.library.at_time(&part.scene));
     for absent in &plan.skipped {
         output::note(&format!("left out: {absent}"));
     }

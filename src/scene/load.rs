@@ -48,6 +48,19 @@ pub fn load_in(what: &str, folder: Option<&Path>) -> Result<Scene> {
     Ok(scene)
 }
 
+/// The same scene with its moving geometry frozen at a time: `time=...` among the options behind its name. A built-in
+/// scene, and a scene for which a time is given already, stay as they are.
+pub fn at_time(what: &str, time: f64) -> String {
+    let (name, settings) = split_settings(what);
+    let bare = name.split(':').next().unwrap_or(name);
+    let is_built_in = procedural::list().iter().any(|info| info.name == bare);
+    if is_built_in || settings.split(',').any(|setting| setting.starts_with("time=")) {
+        return what.to_owned();
+    }
+    let comma = if settings.is_empty() { "" } else { "," };
+    format!("{name}:{settings}{comma}time={time}")
+}
+
 /// The file, folder or list behind `what`; `None` for a built-in scene.
 pub(super) fn file_behind(what: &str, folder: Option<&Path>) -> Result<Option<String>> {
     let (name, _) = split_settings(what);

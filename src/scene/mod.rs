@@ -3,23 +3,27 @@
 //! [`Scene`] is the only thing that the rest of the crate sees of a file. [`load_in`] finds a reader by extension, or a
 //! procedural scene or one of the catalogue by name; adding a format is one file and one line in [`FORMATS`].
 
+pub mod aff;
 pub mod cache;
 pub mod catalogue;
 pub mod gltf;
 pub mod lamps;
 mod load;
+pub mod mesh_builder;
+pub mod mgf;
 pub mod normals;
 pub mod obj;
 mod options;
 pub mod ply;
 pub mod procedural;
 mod suggest;
+pub mod text;
 
 use crate::error::{Error, Result};
 use crate::math::{Aabb, Vertex};
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec3, Vec3A};
-pub use load::{load, load_in};
+pub use load::{at_time, load, load_in};
 pub use options::{MAX_SEGMENTS, Options, Up};
 pub use procedural::{Parameter, SceneInfo, list};
 use std::path::Path;
@@ -36,6 +40,9 @@ pub type Reader = fn(&Path, &Options) -> Result<Scene>;
 /// Readers by file extension (lower case).
 pub const FORMATS: &[(&str, Reader)] = &[
     ("ply", |path, _| ply::read(path)),
+    ("aff", aff::read),
+    ("nff", aff::read),
+    ("mgf", mgf::read),
     ("obj", obj::read),
     ("gltf", gltf::read),
     ("glb", gltf::read),

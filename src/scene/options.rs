@@ -10,6 +10,8 @@ pub struct Options {
     pub time: Option<f64>,
     /// Segments around a sphere, cone or other curved surface; `None`: the format's default.
     pub segments: Option<u32>,
+    /// False if a BART file's cones are to be left out, as the thesis did.
+    pub cones: bool,
     /// True if includes may leave the folder of the file that is named.
     pub outside: bool,
     /// Which way is up in the file; the loaded scene's up is y.
@@ -32,7 +34,7 @@ pub enum Up {
 
 impl Default for Options {
     fn default() -> Options {
-        Options { time: None, segments: None, outside: false, up: Up::Y, scale: 1.0, lamp: None }
+        Options { time: None, segments: None, cones: true, outside: false, up: Up::Y, scale: 1.0, lamp: None }
     }
 }
 
@@ -41,7 +43,7 @@ pub const MAX_SEGMENTS: u32 = 1024;
 
 impl Options {
     /// The names of all options.
-    pub const KEYS: [&str; 6] = ["time", "segments", "outside", "up", "scale", "lamp"];
+    pub const KEYS: [&str; 7] = ["time", "segments", "cones", "outside", "up", "scale", "lamp"];
 
     /// Reads `key=value,...`; `what` stands in errors.
     ///
@@ -60,6 +62,10 @@ impl Options {
                 "segments" => match value.parse() {
                     Ok(segments) if (3..=MAX_SEGMENTS).contains(&segments) => options.segments = Some(segments),
                     _ => return Err(wrong("give 3 to 1024")),
+                },
+                "cones" => match value {
+                    "yes" | "no" => options.cones = value == "yes",
+                    _ => return Err(wrong("give yes or no")),
                 },
                 "outside" => match value {
                     "yes" | "no" => options.outside = value == "yes",
@@ -95,6 +101,9 @@ impl Options {
         }
         if let Some(segments) = self.segments {
             set.push(format!("segments={segments}"));
+        }
+        if !self.cones {
+            set.push("cones=no".into());
         }
         if self.outside {
             set.push("outside=yes".into());

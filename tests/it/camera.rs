@@ -1,10 +1,12 @@
 //! Camera paths: files, thinning, fitting, errors.
 
+use crate::support::file_below;
 use glam::Vec3;
 use rtbench::backend::Config;
-use rtbench::camera::{CameraPath, View, names};
+use rtbench::camera::{CameraPath, View, names, to_csv, to_toml};
 use rtbench::math::{Ray, T_MAX, intersect};
-use rtbench::scene::{self, Scene};
+use rtbench::scene::{self, Pose, Scene, SceneCamera};
+use std::process::Command;
 
 fn small(name: &str) -> Scene {
     let info = *scene::list().iter().find(|info| info.name == name).unwrap();
@@ -283,4 +285,158 @@ fn what_only_shows_in_a_scene_is_refused_there() {
     let above = "kind = \"orbit\"\nframes = 4\ndistance = 1e-6\nheight = 3\n";
     let message = from_text(above).unwrap().views(&scene, None).unwrap_err().to_string();
     assert!(message.contains("looks along its up vector"), "{message}");
+}
+
+/// A scene with a camera of its own, which turns a little.
+fn filmed(frames: usize) -> Scene {
+    let mut random = crate::support::random(7);
+    let frames = (0..frames)
+        .map(|i| {
+            let direction = Vec3::new(random(), random(), random() - 2.0).normalize();
+            Pose { time: 0.1 * i as f64, position: Vec3::new(random(), 1.0 / 3.0, 1e-7), direction, up: Vec3::Y }
+        })
+        .collect();
+    let camera = Some(SceneCamera { field_of_view: 36.869_892, frames });
+    Scene { name: "film:time=3".into(), camera, camera_path: Some("hall".into()), ..small("scan") }
+}
+
+#[test]
+fn a_scene_with_a_camera_of_its_own_is_seen_through_it() {
+    let scene = filmed(30);
+    let poses = &scene.camera.as_ref().unwrap().frames;
+    for config in Config::ALL {
+        let path = CameraPath::for_scene(&scene, config);
+        assert_eq!((path.name.as_str(), path.frames, path.field_of_view), ("film", 30, 36.869_892));
+        let views = path.views(&scene, None).unwrap();
+        assert_eq!(views.len(), 30);
+        for (view, pose) in views.iter().zip(poses) {
+            assert_eq!(
+                (view.camera.position, view.camera.direction, view.camera.up),
+                (pose.position, pose.direction, pose.up)
+            );
+        }
+        let thinned = path.views(&scene, Some(10)).unwrap();
+        assert_eq!(
+            thinned.iter().map(|v| v.camera).collect::<Vec<_>>(),
+            views.iter().step_by(3).map(|v| v.camera).collect::<Vec<_>>()
+        );
+        assert!(path.views(&scene, Some(31)).is_err());
+    }
+    let moved = Scene { camera: filmed(31).camera, ..filmed(30) };
+    let hash = |scene: &Scene| CameraPath::for_scene(scene, Config::P).content_hash();
+    assert_ne!(hash(&scene), hash(&moved));
+    // A camera that stands still has one frame to show, however many are wanted
+    let still = filmed(1);
+    let path = CameraPath::for_scene(&still, Config::PSR);
+    for frames in [None, Some(1), Some(20)] {
+        assert_eq!(path.views(&still, frames).unwrap().len(), 1);
+    }
+}
+
+#[test]
+fn an_exported_path_shows_the_same_views_to_the_bit() {
+    let scene = filmed(200);
+    for path in [CameraPath::for_scene(&scene, Config::P), CameraPath::load("orbit").unwrap(), from_text(WALK).unwrap()]
+    {
+        let recorded = path.poses(&scene, None).unwrap();
+        let again = from_text(&to_toml(&recorded, "\"quoted\"\nlines")).unwrap();
+        assert_eq!(again.description, "\"quoted\"\nlines");
+        assert_eq!(again.poses(&scene, None).unwrap(), recorded);
+        assert_eq!(again.views(&scene, None).unwrap(), path.views(&scene, None).unwrap(), "{}", path.name);
+    }
+    let recorded = CameraPath::for_scene(&scene, Config::P).poses(&scene, Some(100)).unwrap();
+    let csv = to_csv(&recorded);
+    let mut lines = csv.lines();
+    assert_eq!(lines.next(), Some("frame,time,pos_x,pos_y,pos_z,dir_x,dir_y,dir_z,up_x,up_y,up_z"));
+    assert_eq!(lines.clone().count(), 100);
+    let second: Vec<f64> = lines.nth(1).unwrap().split(',').map(|n| n.parse().unwrap()).collect();
+    assert_eq!((second[0], second[1], second[3] as f32), (1.0, 0.2, 1.0 / 3.0));
+}
+
+#[test]
+fn recorded_frames_are_refused_with_line_and_mend() {
+    let whole = "kind = \"frames\"\nfield_of_view = 45\nposes = [\n  [0, 0, 0, 5, 0, 0, -2, 0, 1, 0],\n  [1, 0, 0, 4, 0, 0, -1, 0, 1, 0],\n]\n";
+    let views = from_text(whole).unwrap().views(&small("scan"), None).unwrap();
+    assert_eq!((views.len(), views[0].camera.direction), (2, Vec3::NEG_Z), "a direction of another length");
+    for (from, to, words) in [
+        ("  [1, 0, 0, 4,", "  [1, 0, 0, nan,", &[":5: time or position is not finite"][..]),
+        ("  [1, 0, 0, 4,", "  [inf, 0, 0, 4,", &[":5: time or position"]),
+        ("  [1, 0, 0, 4,", "  [1, 0, 0,", &[":5:"]),
+        ("-2, 0, 1, 0", "0, 0, 1, 0", &[":4: direction or up is zero"]),
+        ("-2, 0, 1, 0", "-2, 0, 0, 1", &[":4: direction or up is zero, or the camera looks along"]),
+        ("-2, 0, 1, 0", "nan, 0, 1, 0", &[":4: direction"]),
+        ("field_of_view = 45", "frames = 2", &[":2: `frames` has no meaning for kind frames"]),
+        ("field_of_view = 45", "distance = 2", &[":2: `distance` has no meaning for kind frames"]),
+        ("\"frames\"", "\"walk\"", &[":3: `poses` has no meaning for kind walk"]),
+        ("poses", "rows", &[":3:", "unknown field `rows`"]),
+        (&whole[whole.find("poses").unwrap_or(0)..], "", &["recorded frames need `poses`"]),
+        (&whole[whole.find("poses").unwrap_or(0)..], "poses = []", &["recorded frames need `poses`"]),
+    ] {
+        assert!(whole.contains(from), "{from}");
+        let message = from_text(&whole.replacen(from, to, 1)).expect_err(to).to_string();
+        for word in words {
+            assert!(message.contains(word), "{from:?} -> {to:?}: {message}");
+        }
+    }
+}
+
+/// BART's cameras against values computed with the benchmark's own code.
+#[test]
+fn the_cameras_of_the_real_scenes_are_the_references() {
+    let variable = if std::env::var_os("RTBENCH_REFERENCE").is_some() { "RTBENCH_REFERENCE" } else { "RTBENCH_SCENES" };
+    let beside = if variable == "RTBENCH_SCENES" { "../reference/" } else { "" };
+    for (scene, reference, frames) in [
+        ("bart/museum/museum6-derived.aff", "bart_museum_camera.csv", 300),
+        ("bart/robots/Robot.aff", "bart_robots_camera.csv", 800),
+    ] {
+        let Some(scene) = file_below("RTBENCH_SCENES", scene) else { return };
+        let Some(reference) = file_below(variable, &format!("{beside}{reference}")) else { return };
+        let scene = rtbench::scene::load(scene.to_str().unwrap()).unwrap();
+        let recorded = CameraPath::for_scene(&scene, Config::PSR).poses(&scene, None).unwrap();
+        assert_eq!(recorded.frames.len(), frames);
+        let mut rows = 0;
+        for row in csv::Reader::from_path(reference).unwrap().records() {
+            let numbers: Vec<f64> = row.unwrap().iter().map(|n| n.parse().unwrap()).collect();
+            let pose = &recorded.frames[numbers[0] as usize];
+            let found = [pose.position, pose.direction, pose.up].map(|v| v.to_array());
+            let found: Vec<f64> =
+                std::iter::once(pose.time).chain(found.iter().flatten().map(|&x| f64::from(x))).collect();
+            for (column, (a, b)) in found.iter().zip(&numbers[1..]).enumerate() {
+                assert!((a - b).abs() < 1e-4, "{}: frame {}, column {column}: {a}, not {b}", scene.name, numbers[0]);
+            }
+            rows += 1;
+        }
+        assert!(rows > 20, "only {rows} reference values");
+    }
+}
+
+#[test]
+fn the_program_exports_the_path_of_a_file_at_a_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let keys = "transl 4 0 0 0 9 0 0 0 1 0 0 9 0 0 0 2 1 0 9 0 0 0 3 1 0 9 0 0 0";
+    std::fs::write(file("film.aff"), format!("s 0 0 0 1 x camera {{ s 3 0 0 1 }} a 1 2 5 k camera {{ {keys} }}"))
+        .unwrap();
+    let run = |arguments: &[&str]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_rtbench")).args(arguments).output().unwrap();
+        assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    };
+    for out in ["path.toml", "path.csv"] {
+        assert!(run(&["camera-path", "export", &file("film.aff"), "-o", &file(out)]).contains("5 frames of film"));
+    }
+    assert_eq!(std::fs::read_to_string(file("path.csv")).unwrap().lines().count(), 6);
+    let scene = scene::load(&file("film.aff")).unwrap();
+    let [own, exported] = [CameraPath::for_scene(&scene, Config::P), CameraPath::load(&file("path.toml")).unwrap()];
+    assert_eq!(own.views(&scene, None).unwrap(), exported.views(&scene, None).unwrap());
+    assert!(run(&["camera-path", "list"]).contains("sphereflake"));
+    for (time, right) in [(None, 4.0), (Some("1"), 4.0), (Some("2"), 5.0)] {
+        let mut arguments = vec!["scenes", "info"];
+        let name = file("film.aff");
+        arguments.push(&name);
+        arguments.extend(time.iter().flat_map(|time| ["--scene-time", time]));
+        let expected = format!("largest corner        [{right}, 1, 10]");
+        let text = run(&arguments);
+        assert!(text.contains(&expected), "{arguments:?}: {text}");
+    }
 }

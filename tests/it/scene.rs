@@ -1,11 +1,15 @@
 //! Scenes: readers, built-in scenes, loading by name.
 
+mod aff;
+mod broken_aff;
 mod broken_ply;
 mod built_in;
 mod cache;
 mod catalogue;
 mod fetch;
 mod gltf;
+mod mgf;
+mod mutation;
 mod obj;
 mod ply;
 
@@ -20,6 +24,37 @@ fn real_scenes(test: &str) -> Option<PathBuf> {
         eprintln!("{test}: did not run, RTBENCH_SCENES does not name a folder of scenes");
     }
     folder
+}
+
+/// Files of a scene, in a folder of their own inside another, until this is dropped.
+struct Files {
+    folder: tempfile::TempDir,
+}
+
+impl Files {
+    /// Writes files by name and text.
+    fn new(files: &[(&str, &str)]) -> Files {
+        let folder = Files { folder: tempfile::tempdir().unwrap() };
+        std::fs::create_dir_all(folder.path("")).unwrap();
+        for (name, text) in files {
+            folder.write(name, text.as_bytes());
+        }
+        folder
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join("scene").join(name)
+    }
+
+    fn write(&self, name: &str, bytes: &[u8]) {
+        std::fs::create_dir_all(self.path(name).parent().unwrap()).unwrap();
+        std::fs::write(self.path(name), bytes).unwrap();
+    }
+
+    /// Loads one of them; options may follow its name.
+    fn load(&self, what: &str) -> Result<Scene> {
+        scene::load(self.path(what).to_str().unwrap())
+    }
 }
 
 /// Loads a scene of which these are the file's bytes.
@@ -129,6 +164,11 @@ fn a_file_takes_options_behind_its_name() {
     let file = path.to_str().unwrap();
     let plain = scene::load(file).unwrap();
     let turned = scene::load(&format!("{file}:up=z,scale=2")).unwrap();
+    assert_eq!(scene::at_time(file, 3.5), format!("{file}:time=3.5"));
+    assert_eq!(scene::at_time(&format!("{file}:up=z"), -1.0), format!("{file}:up=z,time=-1"));
+    for stays in [format!("{file}:time=2"), "hall:triangles=15000".to_owned(), "hall".to_owned()] {
+        assert_eq!(scene::at_time(&stays, 3.0), stays);
+    }
     assert_eq!((plain.name.as_str(), turned.name.as_str()), ("cube", "cube:up=z,scale=2"));
     let v = |scene: &Scene, i: usize| scene.vertices[i].position;
     for i in 0..plain.vertices.len() {
@@ -143,6 +183,7 @@ fn a_file_takes_options_behind_its_name() {
         ("scale=-1", "positive"),
         ("scale=inf", "positive"),
         ("outside=maybe", "yes or no"),
+        ("cones=3", "yes or no"),
     ] {
         let message = refusal(scene::load(&format!("{file}:{settings}")));
         assert!(message.contains(words), "{settings}: {message}");

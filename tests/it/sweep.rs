@@ -168,9 +168,9 @@ fn an_interrupt_keeps_the_rows() {
 #[test]
 fn presets_are_sound() {
     let plan = Plan::new(&Request { preset: "quick".into(), ..Request::default() }).unwrap();
-    let names: Vec<&str> = plan.selections.iter().map(|s| s.name()).collect();
+    let names: Vec<&str> = plan.parts[0].selections.iter().map(|s| s.name()).collect();
     assert_eq!(names, ["grid", "kdtree", "bvh", "bvh-stack", "ploc-stack"]);
-    assert_eq!((plan.configs.len(), plan.sizes.len(), plan.configurations()), (3, 2, 90));
+    assert_eq!((plan.parts[0].configs.len(), plan.parts[0].sizes.len(), plan.configurations()), (3, 2, 90));
     plan.survey().unwrap();
     // The thesis's scenes are not here: nothing takes their place.
     let nowhere = tempfile::tempdir().unwrap();
@@ -181,10 +181,11 @@ fn presets_are_sound() {
     std::fs::create_dir(nowhere.path().join("dragon")).unwrap();
     std::fs::write(nowhere.path().join("dragon/dragon_vrip.ply"), "").unwrap();
     let plan = Plan::new(&thesis).unwrap();
-    assert_eq!((plan.scenes.len(), plan.skipped.len(), plan.frames), (1, 2, None));
-    assert_eq!(plan.sizes.iter().map(|s| s.width).collect::<Vec<_>>(), [256, 512, 768, 1024]);
+    assert_eq!((plan.scenes(), plan.skipped.len()), (vec!["dragon"], 8));
+    assert_eq!(plan.parts[0].frames, None);
+    assert_eq!(plan.parts[0].sizes.iter().map(|s| s.width).collect::<Vec<_>>(), [256, 512, 768, 1024]);
     thesis.frames = Some(10);
-    assert_eq!(Plan::new(&thesis).unwrap().frames, Some(10));
+    assert!(Plan::new(&thesis).unwrap().parts.iter().all(|part| part.frames == Some(10)));
 }
 
 #[test]

@@ -11,7 +11,7 @@ use crate::scene::{Scene, load_in};
 
 /// Loads a scene and prints what it is like.
 pub fn run(what: &str, library: &LibraryArguments) -> Result<()> {
-    let scene = load_in(what, library.folder().as_deref())?;
+    let scene = load_in(&library.at_time(what), library.folder().as_deref())?;
     let entry = catalogue::find(what.split(':').next().unwrap_or(what));
     let mut text = format!("{}\n", scene.name);
     let mut line = |name: &str, value: String| text += &format!("  {name:<22}{value}\n");

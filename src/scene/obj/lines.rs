@@ -1,7 +1,7 @@
 //! Lines and words of OBJ and MTL.
 
 use super::Fault;
-use crate::scene::ply::number;
+use crate::scene::text::number;
 use glam::Vec3;
 
 /// A text, line by line and word by word. A backslash before the end of a line continues it.

@@ -2,8 +2,8 @@
 
 use super::header::{Element, Header, Kind};
 use super::source::{Bad, Source};
-use super::{Fault, quote};
 use crate::math::Vertex;
+use crate::scene::text::{Fault, quote};
 use crate::scene::{MAX_ELEMENTS, Triangle};
 use glam::Vec3;
 

@@ -3,7 +3,7 @@
 //! Line ends may be LF, CRLF or CR alone (old Macintosh); the first line decides, because in a binary file the byte
 //! after the header's last line end already belongs to the body.
 
-use super::{Fault, quote};
+use crate::scene::text::{Fault, quote};
 
 /// A number's type, as the header names it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

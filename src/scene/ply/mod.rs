@@ -11,46 +11,23 @@
 
 mod body;
 mod header;
-pub(super) mod number;
 mod source;
 
+use super::text::Fault;
 use super::{Scene, normals};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use body::Body;
 use header::{Element, Encoding, Header, Kind};
 use source::{Ascii, Binary};
 use std::path::Path;
 
-/// What is wrong with a file, before the file's name is added.
-#[derive(Debug)]
-pub(crate) struct Fault {
-    line: Option<usize>,
-    problem: String,
-    mend: String,
-}
-
-impl Fault {
-    fn new(line: Option<usize>, problem: impl Into<String>, mend: impl Into<String>) -> Fault {
-        Fault { line, problem: problem.into(), mend: mend.into() }
-    }
-}
-
-/// A piece of the file inside an error: in quotes, printable, short.
-fn quote(text: &str) -> String {
-    let mut shown: String = text.chars().take(40).collect();
-    if shown.len() < text.len() {
-        shown.push('…');
-    }
-    format!("`{}`", shown.escape_debug())
-}
-
 /// Reads the file.
 ///
 /// # Errors
-/// [`Error::Input`] for whatever is wrong with the file.
+/// [`crate::Error::Input`] for whatever is wrong with the file.
 pub fn read(path: &Path) -> Result<Scene> {
     let bytes = super::read_file(path)?;
-    let body = parse(&bytes).map_err(|fault| Error::file(path, fault.line, fault.problem, fault.mend))?;
+    let body = parse(&bytes).map_err(|fault| fault.of(path))?;
     // The file's bytes are no longer needed: less memory for what follows.
     drop(bytes);
     Ok(finish(body))
@@ -61,7 +38,7 @@ pub fn read(path: &Path) -> Result<Scene> {
 /// # Errors
 /// As [`read`].
 pub fn read_bytes(path: &Path, bytes: &[u8]) -> Result<Scene> {
-    let body = parse(bytes).map_err(|fault| Error::file(path, fault.line, fault.problem, fault.mend))?;
+    let body = parse(bytes).map_err(|fault| fault.of(path))?;
     Ok(finish(body))
 }
 

@@ -1,7 +1,7 @@
 //! The two kinds of body, text and bytes, behind one interface, so that the mesh is read by one piece of code.
 
 use super::header::Scalar;
-use super::number;
+use crate::scene::text::number;
 
 /// Why a value could not be read. Small and `Copy`: the text for the user is made by the one who knows the place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,0 +1,71 @@
+//! `rtbench camera-path`: where cameras go.
+
+use super::library::LibraryArguments;
+use super::output;
+use crate::camera::{self, CameraPath};
+use crate::config::Config;
+use crate::error::Result;
+use crate::results::files;
+use clap::Subcommand;
+use std::path::PathBuf;
+
+/// List the built-in camera paths, or write a scene's camera path to a file
+#[derive(Subcommand, Debug)]
+#[command(after_help = EXAMPLES)]
+pub enum Command {
+    /// List the built-in camera paths
+    List,
+    /// Write a scene's camera path, frame by frame
+    ///
+    /// A file that ends in .csv gets a row per frame: frame, time, position, direction, up. Any other becomes a camera
+    /// path file that shows the same views again, to the bit, in every scene.
+    Export {
+        /// Scene file, or built-in scene with parameters
+        #[arg(value_name = "FILE|NAME[:KEY=VALUE,..]")]
+        scene: String,
+        #[command(flatten)]
+        library: LibraryArguments,
+        /// Camera path, instead of the scene's own
+        #[arg(long, value_name = "FILE|NAME")]
+        camera_path: Option<String>,
+        /// Thin the path evenly to this many frames
+        #[arg(long, value_name = "N")]
+        frames: Option<usize>,
+        /// File to write, .toml or .csv
+        #[arg(long, short, value_name = "FILE")]
+        out: PathBuf,
+    },
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  rtbench camera-path list
+  rtbench camera-path export museum6.aff -o museum.toml
+  rtbench camera-path export museum6.aff -o museum.csv";
+
+/// Runs the command.
+///
+/// # Errors
+/// Of scene, path or output.
+pub fn run(command: &Command) -> Result<()> {
+    match command {
+        Command::List => {
+            let line = |(name, frames, description)| format!("{name:<14}{frames:>6} frames  {description}\n");
+            output::print(&camera::descriptions().into_iter().map(line).collect::<String>())
+        }
+        Command::Export { scene, library, camera_path, frames, out } => {
+            let scene = library.load(scene)?;
+            let path = match camera_path {
+                Some(name) => CameraPath::load(name)?,
+                None => CameraPath::for_scene(&scene, Config::P),
+            };
+            let recorded = path.poses(&scene, *frames)?;
+            let text = match out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv")) {
+                true => camera::to_csv(&recorded),
+                false => camera::to_toml(&recorded, &format!("{} in {}", path.name, scene.name)),
+            };
+            files::replace(out, text.as_bytes())?;
+            output::print(&format!("{}: {} frames of {}\n", out.display(), recorded.frames.len(), path.name))
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! What a file may grow into: copies of copies must not fill the memory.
+
+use crate::scene::MAX_ELEMENTS;
+use crate::scene::text::Fault;
+
+/// Bytes of memory that any file may take, and bytes more for each of its own.
+const BASE: usize = 64 << 20;
+const PER_BYTE: usize = 16;
+
+/// Bytes per place in the map of shared vertices: key, index, and the map's own byte; half as much again while it grows.
+const PER_PLACE: usize = 29 * 3 / 2;
+
+/// The memory that is left.
+pub struct Limits {
+    allowed: usize,
+    used: usize,
+}
+
+impl Default for Limits {
+    fn default() -> Limits {
+        Limits { allowed: BASE, used: 0 }
+    }
+}
+
+impl Limits {
+    /// A file of this size has been read.
+    pub fn read(&mut self, bytes: usize) {
+        // One share is for the file's own bytes
+        self.allowed = self.allowed.saturating_add(bytes.saturating_mul(PER_BYTE - 1));
+    }
+
+    /// Something of this size is about to be stored for good. A vector that grows takes twice that.
+    #[inline]
+    pub fn grow(&mut self, bytes: usize) -> Result<(), Fault> {
+        self.used += 2 * bytes;
+        self.hold(0)
+    }
+
+    /// Holds the map of shared vertices, with that many places, against what is left.
+    #[inline]
+    pub fn hold(&self, places: usize) -> Result<(), Fault> {
+        if self.used + places * PER_PLACE > self.allowed { Err(self.exceeded()) } else { Ok(()) }
+    }
+
+    #[cold]
+    fn exceeded(&self) -> Fault {
+        let problem = format!(
+            "the geometry needs more than {} MiB of memory: {PER_BYTE} times the file's size and 64 MiB",
+            self.allowed >> 20
+        );
+        Fault::new(None, problem, "are there copies of copies? Otherwise take fewer segments, as in FILE:segments=8")
+    }
+
+    /// One more vertex, or one more triangle, beside this many.
+    #[inline]
+    pub fn elements(&self, present: usize) -> Result<(), Fault> {
+        if present < MAX_ELEMENTS {
+            return Ok(());
+        }
+        let problem = format!("more than {MAX_ELEMENTS} vertices or triangles");
+        Err(Fault::new(None, problem, "simplify the scene"))
+    }
+}

@@ -1,0 +1,320 @@
+//! A mesh as readers of scene files put it together: a stack of transforms, a current material, polygons and curved
+//! surfaces, and limits on what a file may grow into.
+//!
+//! A vertex has one normal (SPEC section 1). Corners with the same position and normal share a vertex within a *shape*
+//! (see [`MeshBuilder::new_shape`]), so that a smooth surface is indexed and a sharp edge has its vertices twice.
+
+mod curves;
+mod limits;
+mod polygon;
+mod warnings;
+
+use super::text::Fault;
+use super::{Light, Material, Scene, Triangle};
+use crate::math::Vertex;
+use glam::{DAffine3, DMat3, DVec3, Vec3};
+use limits::Limits;
+use polygon::Triangulator;
+pub use polygon::newell;
+use std::collections::HashMap;
+pub use warnings::Warnings;
+
+/// Most transforms inside each other.
+const MAX_DEPTH: usize = 1000;
+
+/// Builds a scene's mesh.
+pub struct MeshBuilder {
+    vertices: Vec<Vertex>,
+    triangles: Vec<Triangle>,
+    materials: Vec<Material>,
+    lights: Vec<Light>,
+    /// The shape's vertices by the bits of position and normal.
+    shared: HashMap<[u32; 6], u32>,
+    /// Materials by their bits.
+    known: HashMap<[u32; 12], u32>,
+    current: Material,
+    /// Index of the current material, once a triangle has it.
+    current_index: Option<u32>,
+    stack: Vec<Frame>,
+    triangulator: Triangulator,
+    corners: Vec<u32>,
+    limits: Limits,
+    /// What the user is told.
+    pub warnings: Warnings,
+}
+
+/// A transform with what follows from it.
+#[derive(Clone, Copy)]
+struct Frame {
+    affine: DAffine3,
+    /// For normals: the inverse transpose but for its length, and good for singular matrices of rank two as well.
+    normals: DMat3,
+    /// True if it turns left into right.
+    mirrored: bool,
+}
+
+impl Frame {
+    fn new(affine: DAffine3) -> Frame {
+        let m = affine.matrix3;
+        let sign = if m.determinant() < 0.0 { -1.0 } else { 1.0 };
+        let cofactors = DMat3::from_cols(
+            m.y_axis.cross(m.z_axis) * sign,
+            m.z_axis.cross(m.x_axis) * sign,
+            m.x_axis.cross(m.y_axis) * sign,
+        );
+        Frame { affine, normals: cofactors, mirrored: sign < 0.0 }
+    }
+}
+
+impl Default for MeshBuilder {
+    fn default() -> MeshBuilder {
+        MeshBuilder {
+            vertices: Vec::new(),
+            triangles: Vec::new(),
+            materials: Vec::new(),
+            lights: Vec::new(),
+            shared: HashMap::new(),
+            known: HashMap::new(),
+            current: Material::neutral(),
+            current_index: None,
+            stack: vec![Frame::new(DAffine3::IDENTITY)],
+            triangulator: Triangulator::default(),
+            corners: Vec::new(),
+            limits: Limits::default(),
+            warnings: Warnings::default(),
+        }
+    }
+}
+
+impl MeshBuilder {
+    /// Tells the size of a file that is being read: the mesh may grow with it. An included file counts once.
+    pub fn read(&mut self, bytes: usize) {
+        self.limits.read(bytes);
+    }
+
+    /// The transform from here to the scene.
+    pub fn transform(&self) -> DAffine3 {
+        self.frame().affine
+    }
+
+    fn frame(&self) -> &Frame {
+        &self.stack[self.stack.len() - 1]
+    }
+
+    /// Applies a transform to what follows, inside the present one, until [`MeshBuilder::pop`].
+    ///
+    /// # Errors
+    /// More than a thousand inside each other.
+    pub fn push(&mut self, local: DAffine3) -> Result<(), Fault> {
+        if self.stack.len() > MAX_DEPTH {
+            let problem = format!("more than {MAX_DEPTH} transforms inside each other");
+            return Err(Fault::new(None, problem, "flatten the file's hierarchy"));
+        }
+        self.stack.push(Frame::new(self.transform() * local));
+        Ok(())
+    }
+
+    /// Ends what [`MeshBuilder::push`] began; false if there was nothing to end.
+    pub fn pop(&mut self) -> bool {
+        self.stack.len() > 1 && self.stack.pop().is_some()
+    }
+
+    /// Replaces the present transform by one from here to the scene.
+    pub fn set_transform(&mut self, transform: DAffine3) {
+        if let Some(top) = self.stack.last_mut() {
+            *top = Frame::new(transform);
+        }
+    }
+
+    /// The material of what follows. What lies outside of a material's range is brought into it.
+    pub fn set_material(&mut self, material: Material) {
+        let sound = |x: f32, most: f32| if x > 0.0 { x.min(most) } else { 0.0 };
+        let colour = |c: Vec3| Vec3::from(c.to_array().map(|x| sound(x, 1e6)));
+        let range = Material {
+            ambient: colour(material.ambient),
+            diffuse: colour(material.diffuse),
+            specular: colour(material.specular),
+            reflectivity: sound(material.reflectivity, 1.0),
+            exponent: sound(material.exponent, 1e6),
+            pad: 0.0,
+        };
+        if range != material {
+            self.warnings.add("material with a value out of its range: brought into it");
+        }
+        if range != self.current {
+            self.current = range;
+            self.current_index = None;
+        }
+    }
+
+    /// Adds a point light, at a position inside the present transform.
+    ///
+    /// # Errors
+    /// Position or colour are beyond single precision.
+    pub fn light(&mut self, position: DVec3, colour: DVec3) -> Result<(), Fault> {
+        let position = self.transform().transform_point3(position).as_vec3();
+        let colour = colour.as_vec3();
+        if !position.is_finite() || !colour.is_finite() {
+            return Err(Fault::new(None, format!("a light at {position} of colour {colour} is not finite"), FINITE));
+        }
+        self.limits.grow(size_of::<Light>())?;
+        self.lights.push(Light::new(position, colour));
+        Ok(())
+    }
+
+    /// Number of lights so far.
+    pub fn lights(&self) -> usize {
+        self.lights.len()
+    }
+
+    /// Number of triangles so far.
+    pub fn triangles(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// Begins a shape: nothing that follows shares a vertex with what came before.
+    pub fn new_shape(&mut self) {
+        if !self.shared.is_empty() {
+            self.shared.clear();
+            // Clearing takes as long as the map is large: a large one must not stay behind for many small shapes
+            self.shared.shrink_to(1024);
+        }
+    }
+
+    /// The index of a vertex, new or shared with an equal one of this shape. The normal may have any length; zero stays
+    /// zero, and is shaded with the triangle's own.
+    ///
+    /// # Errors
+    /// The position is beyond single precision, or there are too many.
+    pub fn vertex(&mut self, position: DVec3, normal: DVec3) -> Result<u32, Fault> {
+        let vertex = self.place(position, normal)?;
+        let bits = [vertex.position, vertex.normal].map(|v| v.to_array().map(f32::to_bits));
+        let key = [bits[0][0], bits[0][1], bits[0][2], bits[1][0], bits[1][1], bits[1][2]];
+        match self.shared.get(&key) {
+            Some(&index) => Ok(index),
+            None => self.store(key, vertex),
+        }
+    }
+
+    /// The same for a mesh that has indices of its own: corners with the same two indices share a vertex, others do not.
+    ///
+    /// # Errors
+    /// As [`MeshBuilder::vertex`].
+    pub fn indexed_vertex(&mut self, indices: [u32; 2], position: DVec3, normal: DVec3) -> Result<u32, Fault> {
+        // No position begins with this: it is not a number
+        let key = [u32::MAX, indices[0], indices[1], 0, 0, 0];
+        if let Some(&index) = self.shared.get(&key) {
+            return Ok(index);
+        }
+        let vertex = self.place(position, normal)?;
+        self.store(key, vertex)
+    }
+
+    /// A vertex where the present transform puts it.
+    fn place(&self, position: DVec3, normal: DVec3) -> Result<Vertex, Fault> {
+        let frame = self.frame();
+        // Adding zero makes -0 and 0 the same vertex
+        let position = frame.affine.transform_point3(position).as_vec3() + Vec3::ZERO;
+        if !position.is_finite() {
+            return Err(Fault::new(None, format!("a corner at {position} is not finite in single precision"), FINITE));
+        }
+        let normal = unit(frame.normals * unit(normal)).as_vec3() + Vec3::ZERO;
+        Ok(Vertex::new(position, normal))
+    }
+
+    fn store(&mut self, key: [u32; 6], vertex: Vertex) -> Result<u32, Fault> {
+        let index = self.vertices.len();
+        self.limits.elements(index)?;
+        self.limits.grow(size_of::<Vertex>())?;
+        self.limits.hold(self.shared.capacity())?;
+        self.vertices.push(vertex);
+        self.shared.insert(key, index as u32);
+        Ok(index as u32)
+    }
+
+    /// A triangle between vertices, counter-clockwise where it is seen from outside.
+    ///
+    /// # Errors
+    /// There are too many.
+    pub fn triangle(&mut self, [a, b, c]: [u32; 3]) -> Result<(), Fault> {
+        self.limits.elements(self.triangles.len())?;
+        self.limits.grow(size_of::<Triangle>())?;
+        let vertices = if self.frame().mirrored { [a, c, b] } else { [a, b, c] };
+        let material = self.material_index();
+        self.triangles.push(Triangle { vertices, material });
+        Ok(())
+    }
+
+    fn material_index(&mut self) -> u32 {
+        if let Some(index) = self.current_index {
+            return index;
+        }
+        let words: [u32; 12] = bytemuck::cast(self.current);
+        let index = *self.known.entry(words).or_insert_with(|| {
+            self.materials.push(self.current);
+            self.materials.len() as u32 - 1
+        });
+        self.current_index = Some(index);
+        index
+    }
+
+    /// A polygon with corners counter-clockwise where it is seen from outside: a fan if it is convex, otherwise cut into
+    /// ears. `normals` has one per corner, or none at all for a flat polygon. One with fewer than three corners is left
+    /// out, with a warning.
+    ///
+    /// # Errors
+    /// A corner is beyond single precision, or there is too much.
+    pub fn polygon(&mut self, corners: &[DVec3], normals: &[DVec3]) -> Result<(), Fault> {
+        self.polygon_with_holes(corners, normals, &[])
+    }
+
+    /// The same with holes: each begins at one of the indices in `holes` and ends before the next; the polygon's own
+    /// corners come first.
+    ///
+    /// # Errors
+    /// As [`MeshBuilder::polygon`].
+    pub fn polygon_with_holes(&mut self, corners: &[DVec3], normals: &[DVec3], holes: &[u32]) -> Result<(), Fault> {
+        let outer = holes.first().map_or(corners.len(), |&first| first as usize);
+        if outer < 3 {
+            self.warnings.add("polygon with fewer than three corners left out");
+            return Ok(());
+        }
+        let flat = newell(&corners[..outer]);
+        let mut vertices = std::mem::take(&mut self.corners);
+        vertices.clear();
+        for (i, &corner) in corners.iter().enumerate() {
+            let given = normals.get(i).copied().unwrap_or(DVec3::ZERO);
+            let normal = if unit(given) == DVec3::ZERO { flat } else { given };
+            if !normals.is_empty() && unit(given) == DVec3::ZERO {
+                self.warnings.add("normal of no length: the polygon's own taken");
+            }
+            vertices.push(self.vertex(corner, normal)?);
+        }
+        let mut triangulator = std::mem::take(&mut self.triangulator);
+        for &[a, b, c] in triangulator.triangles(corners, holes, flat) {
+            self.triangle([a, b, c].map(|i| vertices[i as usize]))?;
+        }
+        self.triangulator = triangulator;
+        self.corners = vertices;
+        Ok(())
+    }
+
+    /// The mesh with its materials, lights and warnings.
+    pub fn finish(self) -> Scene {
+        let MeshBuilder { mut vertices, mut triangles, materials, lights, warnings, .. } = self;
+        vertices.shrink_to_fit();
+        triangles.shrink_to_fit();
+        Scene { vertices, triangles, materials, lights, warnings: warnings.lines(), ..Scene::default() }
+    }
+}
+
+const FINITE: &str = "bring the scene closer to its origin, or repair its transforms";
+
+/// A unit vector of that direction; zero for what has none.
+fn unit(v: DVec3) -> DVec3 {
+    let largest = v.abs().max_element();
+    if largest > 0.0 && largest.is_finite() { (v / largest).normalize_or_zero() } else { DVec3::ZERO }
+}
+
+#[cfg(test)]
+mod tests;

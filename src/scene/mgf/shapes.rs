@@ -1,0 +1,118 @@
+//! Shapes: what becomes triangles.
+
+use super::transform::number_of;
+use super::{Point, Reader};
+use crate::scene::mesh_builder::newell;
+use crate::scene::text::Fault;
+use glam::DVec3;
+
+impl Reader {
+    /// Reads a shape of the current material.
+    pub(super) fn shape(&mut self, entity: &[u8], arguments: &[&[u8]]) -> Result<(), Fault> {
+        if !self.material_set {
+            self.material_set = true;
+            let material = *self.materials.current();
+            if material.transparent.amount + material.through.amount > 0.0 {
+                self.mesh.warnings.add("transparent material: shown opaque");
+            }
+            self.mesh.set_material(material.material());
+        }
+        let before = self.mesh.triangles();
+        match (entity, arguments) {
+            (b"f", names) => {
+                let points = self.points(names)?;
+                self.face(&points, &[])?;
+            }
+            (b"fh", names) => {
+                let mut points = Vec::with_capacity(names.len());
+                let mut holes = Vec::new();
+                for &name in names {
+                    match name {
+                        b"-" => holes.push(points.len() as u32),
+                        name => points.push(*self.vertices.find(name)?),
+                    }
+                }
+                self.face(&points, &holes)?;
+            }
+            (b"sph", &[center, radius]) => {
+                let center = self.vertices.find(center)?.position;
+                self.mesh.sphere(center, number_of(radius)?, self.segments)?;
+            }
+            (b"cyl", &[from, radius, to]) => self.cone([from, radius, to, radius])?,
+            (b"cone", &[from, radius, to, radius_there]) => self.cone([from, radius, to, radius_there])?,
+            (b"ring", &[center, inner, outer]) => {
+                let Point { position, normal } = *self.vertices.find(center)?;
+                let radii = [number_of(inner)?, number_of(outer)?];
+                if radii[0] < 0.0 || radii[1] < radii[0] {
+                    return Err(Fault::new(None, "the radii are not 0 <= inner < outer", "put the inner one first"));
+                }
+                self.mesh.ring(position, normal, radii, self.segments)?;
+            }
+            (b"torus", &[center, inner, outer]) => {
+                let Point { position, normal } = *self.vertices.find(center)?;
+                // Negative radii turn it inside out
+                let (inner, outer) = (number_of(inner)?, number_of(outer)?);
+                self.mesh.torus(position, normal, (inner + outer).abs() / 2.0, (outer - inner) / 2.0, self.segments)?;
+            }
+            (b"prism", [names @ .., length]) => self.prism(names, number_of(length)?)?,
+            _ => return Err(Fault::new(None, format!("{} arguments are not what it takes", arguments.len()), "")),
+        }
+        let emitted = self.materials.current().emitted;
+        let after = self.mesh.triangles();
+        if emitted.amount > 0.0 && after > before {
+            self.emitters.add(before..after, emitted.colour.rgb() * emitted.amount);
+        }
+        Ok(())
+    }
+
+    fn points(&self, names: &[&[u8]]) -> Result<Vec<Point>, Fault> {
+        names.iter().map(|name| self.vertices.find(name).copied()).collect()
+    }
+
+    /// A face; where a vertex has no normal it is the face's own.
+    fn face(&mut self, points: &[Point], holes: &[u32]) -> Result<(), Fault> {
+        let corners: Vec<DVec3> = points.iter().map(|point| point.position).collect();
+        if points.iter().all(|point| point.normal == DVec3::ZERO) {
+            return self.mesh.polygon_with_holes(&corners, &[], holes);
+        }
+        let outer = holes.first().map_or(corners.len(), |&first| first as usize);
+        let own = newell(&corners[..outer]);
+        let normal = |point: &Point| if point.normal == DVec3::ZERO { own } else { point.normal };
+        let normals: Vec<DVec3> = points.iter().map(normal).collect();
+        self.mesh.polygon_with_holes(&corners, &normals, holes)
+    }
+
+    fn cone(&mut self, [from, radius, to, radius_there]: [&[u8]; 4]) -> Result<(), Fault> {
+        let [from, to] = [self.vertices.find(from)?.position, self.vertices.find(to)?.position];
+        let radii = [number_of(radius)?, number_of(radius_there)?];
+        if radii[0] * radii[1] < 0.0 {
+            return Err(Fault::new(None, "one radius is positive, one negative", "give both the same sign"));
+        }
+        self.mesh.cone((from, radii[0]), (to, radii[1]), self.segments)
+    }
+
+    /// A prism: an end face that looks outward, extruded away from its normal; a negative length goes the other way, and
+    /// turns the solid inside out.
+    fn prism(&mut self, names: &[&[u8]], length: f64) -> Result<(), Fault> {
+        self.mesh.new_shape();
+        let points = self.points(names)?;
+        let near: Vec<DVec3> = points.iter().map(|point| point.position).collect();
+        let normal = newell(&near).normalize_or_zero();
+        if near.len() < 3 || normal == DVec3::ZERO || length == 0.0 {
+            self.mesh.warnings.add("prism without a volume left out");
+            return Ok(());
+        }
+        let far: Vec<DVec3> = near.iter().map(|&corner| corner - normal * length).collect();
+        self.mesh.polygon(&near, &[])?;
+        for i in 0..near.len() {
+            let next = (i + 1) % near.len();
+            let corners = [near[i], far[i], far[next], near[next]];
+            match [points[i].normal, points[next].normal] {
+                [a, b] if a != DVec3::ZERO && b != DVec3::ZERO => self.mesh.polygon(&corners, &[a, a, b, b])?,
+                _ => self.mesh.polygon(&corners, &[])?,
+            }
+        }
+        let back: Vec<DVec3> = far.into_iter().rev().collect();
+        self.mesh.polygon(&back, &[])
+    }
+}

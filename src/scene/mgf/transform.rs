@@ -1,0 +1,133 @@
+//! Transforms with arrays: `-t 1 0 0 -a 5 -rz 30 -i 1 -s 2`.
+
+use crate::scene::text::number;
+use crate::scene::text::{Fault, quote_bytes};
+use glam::{DAffine3, DMat3, DVec3};
+
+/// Most copies that one transform makes.
+const MAX_COPIES: usize = 100_000;
+
+/// A number among arguments.
+pub fn number_of(word: &[u8]) -> Result<f64, Fault> {
+    match number::double(word) {
+        Some((value, length)) if length == word.len() && value.is_finite() => Ok(value),
+        _ => Err(Fault::new(None, format!("{} is not a finite number", quote_bytes(word)), "")),
+    }
+}
+
+/// A stretch of arguments that is applied several times.
+struct Stretch {
+    transform: DAffine3,
+    times: usize,
+    /// True for copies that are applied 0, 1, 2, ... times; false if all are applied `times` times.
+    array: bool,
+}
+
+/// The places in which things are to be put: one without arrays.
+pub fn places(arguments: &[&[u8]]) -> Result<Vec<DAffine3>, Fault> {
+    let mut stretches = vec![Stretch { transform: DAffine3::IDENTITY, times: 1, array: false }];
+    let mut rest = arguments.iter();
+    while let Some(&option) = rest.next() {
+        let mut number = || -> Result<f64, Fault> {
+            let end = || Fault::new(None, format!("{} needs more numbers", quote_bytes(option)), "");
+            number_of(rest.next().ok_or_else(end)?)
+        };
+        let step = match option {
+            b"-t" => DAffine3::from_translation(DVec3::new(number()?, number()?, number()?)),
+            b"-rx" => DAffine3::from_mat3(DMat3::from_rotation_x(number()?.to_radians())),
+            b"-ry" => DAffine3::from_mat3(DMat3::from_rotation_y(number()?.to_radians())),
+            b"-rz" => DAffine3::from_mat3(DMat3::from_rotation_z(number()?.to_radians())),
+            b"-s" => DAffine3::from_scale(DVec3::splat(number()?)),
+            b"-mx" => DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0)),
+            b"-my" => DAffine3::from_scale(DVec3::new(1.0, -1.0, 1.0)),
+            b"-mz" => DAffine3::from_scale(DVec3::new(1.0, 1.0, -1.0)),
+            b"-a" | b"-i" => {
+                let count = number()?;
+                if !(count >= 0.0 && count <= MAX_COPIES as f64 && count.fract() == 0.0) {
+                    let problem = format!("{} {count}: not a number of copies", quote_bytes(option));
+                    return Err(Fault::new(None, problem, format!("give 0 to {MAX_COPIES}")));
+                }
+                let (times, array) = (count as usize, option == b"-a");
+                stretches.push(Stretch { transform: DAffine3::IDENTITY, times, array });
+                continue;
+            }
+            other => {
+                let mend = "-t, -rx, -ry, -rz, -s, -mx, -my, -mz, -i and -a";
+                return Err(Fault::new(None, format!("{} is no part of a transform", quote_bytes(other)), mend));
+            }
+        };
+        if let Some(stretch) = stretches.last_mut() {
+            stretch.transform = step * stretch.transform;
+        }
+    }
+    let mut places = vec![DAffine3::IDENTITY];
+    for Stretch { transform, times, array } in stretches {
+        if array && places.len().saturating_mul(times) > MAX_COPIES {
+            return Err(Fault::new(None, format!("more than {MAX_COPIES} copies"), "repeat less"));
+        }
+        if array {
+            let mut all = Vec::with_capacity(places.len() * times);
+            for _ in 0..times {
+                all.extend_from_slice(&places);
+                places.iter_mut().for_each(|place| *place = transform * *place);
+            }
+            places = all;
+        } else {
+            // Squared and multiplied: many repetitions are a few steps
+            let power = power(transform, times);
+            places.iter_mut().for_each(|place| *place = power * *place);
+        }
+    }
+    Ok(places)
+}
+
+fn power(mut base: DAffine3, mut exponent: usize) -> DAffine3 {
+    let mut result = DAffine3::IDENTITY;
+    while exponent > 0 {
+        if exponent % 2 == 1 {
+            result = base * result;
+        }
+        base = base * base;
+        exponent /= 2;
+    }
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn origins(text: &str) -> Vec<[i64; 3]> {
+        let words: Vec<&[u8]> = text.split_ascii_whitespace().map(str::as_bytes).collect();
+        let round = |v: DVec3| v.to_array().map(|x| (x * 1000.0).round() as i64);
+        places(&words).unwrap().iter().map(|place| round(place.transform_point3(DVec3::X))).collect()
+    }
+
+    #[test]
+    fn steps_act_one_after_another_on_what_they_find() {
+        assert_eq!(origins(""), [[1000, 0, 0]]);
+        assert_eq!(origins("-t 1 0 0 -rz 90"), [[0, 2000, 0]]);
+        assert_eq!(origins("-rz 90 -t 1 0 0"), [[1000, 1000, 0]]);
+        assert_eq!(origins("-rx 20 -ry 90 -s 2 -mz -my"), [[0, 0, 2000]]);
+        assert_eq!(origins("-i 3 -t 1 0 0 -i 1 -s 2"), [[8000, 0, 0]]);
+        assert_eq!(origins("-i 100000 -rz 1"), [[174, -985, 0]], "these are 280 degrees and whole turns");
+    }
+
+    #[test]
+    fn arrays_multiply_and_the_first_stays_in_place() {
+        assert_eq!(origins("-a 3 -t 1 0 0"), [[1000, 0, 0], [2000, 0, 0], [3000, 0, 0]]);
+        assert_eq!(
+            origins("-t 1 0 0 -a 2 -t 0 1 0 -a 2 -rz 180 -i 1 -t 0 0 5"),
+            [[2000, 0, 5000], [2000, 1000, 5000], [-2000, 0, 5000], [-2000, -1000, 5000]]
+        );
+        assert!(origins("-a 0 -t 1 0 0").is_empty());
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        for text in ["-t 1 0", "-x 1", "-a 1.5", "-a -1", "-a 1e9", "-a 1000 -mx -a 101", "-s nan", "1 0 0", "-i 2e6"] {
+            let words: Vec<&[u8]> = text.split_ascii_whitespace().map(str::as_bytes).collect();
+            assert!(places(&words).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! Files that include others: found, held against loops and against leaving the scene's folder, read once.
+
+use super::{Fault, quote_bytes};
+use crate::error::Result;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+/// Most files inside each other.
+const MAX_DEPTH: usize = 64;
+
+/// Most includes that are followed in all.
+const MAX_READINGS: usize = 20_000;
+
+/// Bytes that may be gone through in all: so many in any case, and so many times the files' sizes.
+const BASE: usize = 16 << 20;
+const TIMES: usize = 200;
+
+/// The files of a scene.
+pub struct Includes {
+    /// The folder of the first file, without links.
+    root: PathBuf,
+    outside: bool,
+    /// Bytes by the file's path without links.
+    files: HashMap<PathBuf, Rc<[u8]>>,
+    /// What is being read, from the first file inwards.
+    open: Vec<PathBuf>,
+    readings: usize,
+    /// Bytes of all files, each once.
+    bytes: usize,
+    /// Bytes gone through.
+    passed: usize,
+}
+
+impl Includes {
+    /// The scene whose first file is `path`, and its bytes. `outside` says that includes may leave its folder.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn new(path: &Path, outside: bool) -> Result<(Includes, Rc<[u8]>)> {
+        let bytes: Rc<[u8]> = crate::scene::read_file(path)?.into();
+        let whole = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        let root = whole.parent().map(Path::to_owned).unwrap_or_default();
+        let files = HashMap::from([(whole.clone(), Rc::clone(&bytes))]);
+        let size = bytes.len();
+        let includes = Includes { root, outside, files, open: vec![whole], readings: 0, bytes: size, passed: size };
+        Ok((includes, bytes))
+    }
+
+    /// Bytes of all files so far, each counted once.
+    pub fn bytes(&self) -> usize {
+        self.bytes
+    }
+
+    /// Opens the file that `including` calls `name`: its path as errors show it, and its bytes. [`Includes::close`]
+    /// ends it.
+    ///
+    /// # Errors
+    /// It may not be included, or cannot be read.
+    pub fn open(&mut self, including: &Path, name: &[u8]) -> Result<(PathBuf, Rc<[u8]>), Fault> {
+        let fault = |problem: &str, mend: String| {
+            Err(Fault::new(None, format!("include {}: {problem}", quote_bytes(name)), mend))
+        };
+        let shown = including.with_file_name("").join(String::from_utf8_lossy(name).as_ref());
+        let whole = match shown.canonicalize() {
+            Ok(whole) => whole,
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
+                return fault("no such file", format!("it would be {}", shown.display()));
+            }
+            Err(e) => return fault(&format!("cannot be read: {e}"), String::new()),
+        };
+        if !self.outside && !whole.starts_with(&self.root) {
+            return fault("lies outside of the scene's folder", "allow that with FILE:outside=yes".into());
+        }
+        if self.open.contains(&whole) {
+            return fault("the file includes itself, perhaps by way of others", "break the loop".into());
+        }
+        if self.open.len() > MAX_DEPTH {
+            return fault("too many files inside each other", format!("{MAX_DEPTH} are allowed"));
+        }
+        let bytes = match self.files.get(&whole) {
+            Some(bytes) => Rc::clone(bytes),
+            None => {
+                let bytes: Rc<[u8]> = match crate::scene::read_file(&whole) {
+                    Ok(bytes) => bytes.into(),
+                    Err(error) => return fault(&error.to_string(), String::new()),
+                };
+                self.bytes += bytes.len();
+                self.files.insert(whole.clone(), Rc::clone(&bytes));
+                bytes
+            }
+        };
+        self.readings += 1;
+        self.passed += bytes.len();
+        if self.readings > MAX_READINGS || self.passed > BASE + TIMES * self.bytes {
+            return fault("files are included too often", "are there includes of includes of includes?".into());
+        }
+        self.open.push(whole);
+        Ok((shown, bytes))
+    }
+
+    /// Ends the file that was opened last.
+    pub fn close(&mut self) {
+        self.open.pop();
+    }
+
+    /// Starts again with the first file.
+    pub fn rewind(&mut self) {
+        self.open.truncate(1);
+        (self.readings, self.passed) = (0, 0);
+    }
+}

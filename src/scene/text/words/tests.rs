@@ -1,0 +1,94 @@
+//! Words, lines, numbers, counts, of every shape.
+
+use super::*;
+
+static AFF: Syntax = Syntax::new(b"#%", b"{}");
+static INVENTOR: Syntax = Syntax::new(b"#", b"{}[],\"");
+
+fn all<'a>(text: &'a [u8], syntax: &'a Syntax) -> Vec<(String, usize)> {
+    let mut words = Words::new(text, syntax);
+    let mut found = Vec::new();
+    while let Some(word) = words.next() {
+        found.push((String::from_utf8_lossy(word).into_owned(), words.line()));
+    }
+    found
+}
+
+#[test]
+fn words_have_their_lines_whatever_ends_them() {
+    for end in ["\n", "\r\n", "\r"] {
+        let text = ["k a{", "", "% no } word", "1.5#, nor this", "}"].join(end);
+        let expected = [("k", 1), ("a", 1), ("{", 1), ("1.5", 4), ("}", 5)];
+        let found = all(text.as_bytes(), &AFF);
+        assert_eq!(found, expected.map(|(word, line)| (word.to_owned(), line)), "{end:?}");
+    }
+    assert!(all(b"", &AFF).is_empty());
+    assert!(all(b" \n\t#", &AFF).is_empty());
+}
+
+#[test]
+fn strings_are_one_word_with_lines_inside() {
+    let found = all(b"Info { string \"a {\r\n\\\" b\" } [1,-1]\n\"open", &INVENTOR);
+    let words: Vec<&str> = found.iter().map(|(word, _)| word.as_str()).collect();
+    assert_eq!(words, ["Info", "{", "string", "\"a {\r\n\\\" b\"", "}", "[", "1", ",", "-1", "]", "\"open"]);
+    assert_eq!([found[3].1, found[4].1, found[10].1], [1, 2, 3]);
+    assert_eq!(all(b"\"\\", &INVENTOR).len(), 1, "a backslash at the very end");
+}
+
+#[test]
+fn any_byte_may_stand_in_a_word() {
+    let mut words = Words::new(b"k M\xfcnch\xc3\xa9n 1", &AFF);
+    assert_eq!(words.next(), Some(&b"k"[..]));
+    let fault = words.number("k").unwrap_err();
+    assert_eq!(fault.problem, "k: `M\u{fffd}nchén` is not a number");
+    assert_eq!(words.number("k"), Ok(1.0));
+}
+
+#[test]
+fn a_word_may_be_asked_for_on_the_same_line_only() {
+    let mut words = Words::new(b"l 1 # one\n2 3\n4 5", &AFF);
+    assert_eq!(words.next_on_line(), Some(&b"l"[..]));
+    assert_eq!(words.peek_on_line(), Some(&b"1"[..]));
+    assert_eq!(words.next_on_line(), Some(&b"1"[..]));
+    assert_eq!(words.peek_on_line(), None);
+    assert_eq!(words.next_on_line(), None);
+    assert_eq!(words.line(), 1);
+    assert_eq!(words.next(), Some(&b"2"[..]));
+    words.skip_line();
+    assert_eq!(words.next(), Some(&b"4"[..]));
+    assert!(words.skip(1, "x").is_ok() && words.skip(1, "x").is_err());
+}
+
+#[test]
+fn numbers_of_all_shapes_and_no_others() {
+    let mut words = Words::new(b"1 1. .5 -.5 1.e5 -3e-2 +1 1E+2 0x1 nan inf 1e400 1,5", &AFF);
+    let expected = [1.0, 1.0, 0.5, -0.5, 1e5, -0.03, 1.0, 100.0];
+    assert_eq!(words.numbers::<8>("x").unwrap(), expected);
+    for words_of_error in [
+        "`0x1` is not a number",
+        "`nan` is not a finite",
+        "`inf` is not a finite",
+        "`1e400` is not a finite",
+        "`1,5` is not a number",
+        "ends within x",
+    ] {
+        let fault = words.number("x").unwrap_err();
+        assert!(fault.problem.contains(words_of_error), "{}", fault.problem);
+    }
+}
+
+#[test]
+fn counts_are_held_against_the_file_and_indices_against_counts() {
+    let mut words = Words::new(b"3 1 2 3 4 1000000000 -1 99999999999999999999 2 1 7 -1 1.0", &AFF);
+    assert_eq!(words.count(2, "n"), Ok(3));
+    assert_eq!(words.numbers::<4>("n"), Ok([1.0, 2.0, 3.0, 4.0]));
+    assert!(words.count(1, "n").unwrap_err().problem.contains("1000000000 cannot stand in the"));
+    assert!(words.count(1, "n").unwrap_err().problem.contains("negative"));
+    assert!(words.count(1, "n").unwrap_err().problem.contains("not a whole number"));
+    assert_eq!(words.index(3, "i"), Ok(2));
+    assert_eq!(words.index(3, "i"), Ok(1));
+    for _ in 0..2 {
+        assert!(words.index(3, "i").unwrap_err().problem.contains("out of range"));
+    }
+    assert!(words.index(3, "i").unwrap_err().problem.contains("`1.0` is not a whole number"));
+}
