@@ -1,19 +1,18 @@
 //! The bars of the builders, as ratios of interleaved rounds in one run: `cargo bench --bench bars`.
 //!
-//! Every round builds each contestant once, in an order that turns round every other time (ABBA), so that a machine
-//! that is busy or changes its clock disturbs all of them alike. A ratio is the median of the rounds' ratios, with
-//! the interval that an exact sign test gives at about 95 %.
+//! Every round builds each contestant once, in alternating order; a ratio is the median of the rounds' ratios, with the
+//! interval that an exact sign test gives at about 95 %.
 
 mod common;
 
-use common::{Input, median, sign_test_interval, sorted};
+use common::{Input, median, ratio, sorted};
 use rtbench::accel::Selection;
 use rtbench::scene::Scene;
 use std::hint::black_box;
 use std::time::Instant;
 
 /// Milliseconds of one build.
-type Contestant<'a> = (&'static str, Box<dyn Fn() -> f64 + 'a>);
+type Contestant<'a> = (&'static str, Box<dyn FnMut() -> f64 + 'a>);
 
 fn own<'a>(name: &'static str, structure: &str, threads: usize, scene: &'a Scene) -> Contestant<'a> {
     let selection = Selection::parse(structure).expect("a name of the table");
@@ -48,7 +47,7 @@ fn main() {
 fn bars(name: &str, scene: &Scene, rounds: usize) {
     let input = Input::new(scene);
     let one = common::pool(1);
-    let contestants: Vec<Contestant> = vec![
+    let mut contestants: Vec<Contestant> = vec![
         own("bvh, 1 thread", "bvh", 1, scene),
         own("bvh, 2 threads", "bvh", 2, scene),
         own("kdtree, 1 thread", "kdtree", 1, scene),
@@ -59,16 +58,8 @@ fn bars(name: &str, scene: &Scene, rounds: usize) {
             one.install(|| common::obvhs(&input, obvhs::BvhBuildParams::medium_build()))
         }),
     ];
-    let mut times = vec![Vec::new(); contestants.len()];
-    for round in 0..rounds {
-        let mut order: Vec<usize> = (0..contestants.len()).collect();
-        if round % 2 == 1 {
-            order.reverse();
-        }
-        for i in order {
-            times[i].push((contestants[i].1)());
-        }
-    }
+    let mut runs: Vec<&mut dyn FnMut() -> f64> = contestants.iter_mut().map(|c| &mut *c.1 as _).collect();
+    let times = common::interleaved(&mut runs, rounds);
 
     println!("{name}: {} triangles, {rounds} interleaved rounds", scene.triangles.len());
     for ((label, _), times) in contestants.iter().zip(&times) {
@@ -83,8 +74,7 @@ fn bars(name: &str, scene: &Scene, rounds: usize) {
         ("grid, 1 thread", "bvh, 1 thread", "less than 1"),
         ("bvh, 1 thread", "obvhs medium, 1 thread", "none"),
     ] {
-        let ratios: Vec<f64> = of(a).iter().zip(of(b)).map(|(a, b)| a / b).collect();
-        let (low, high) = sign_test_interval(&ratios);
-        println!("  {a} / {b}: {:.3} ({low:.3} to {high:.3}), bar: {bar}", median(&ratios));
+        let (middle, low, high) = ratio(of(a), of(b));
+        println!("  {a} / {b}: {middle:.3} ({low:.3} to {high:.3}), bar: {bar}");
     }
 }

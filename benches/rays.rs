@@ -2,12 +2,12 @@
 //!
 //! One frame of primary rays, 1024 squared: obvhs's own CPU traversal (medium build, precomputed triangles, hit or miss
 //! only) against `bvh-stack` and `ploc-stack`, which also shade and store, as CPU twins and on the best Vulkan device.
-//! The order turns round every other time (ABBA); a ratio is the median of the rounds' ratios, with the interval that
-//! an exact sign test gives at about 95 %.
+//! Rounds alternate in order; a ratio is the median of the rounds' ratios, with the interval that an exact sign test
+//! gives at about 95 %.
 
 mod common;
 
-use common::{Input, median, sign_test_interval, sorted};
+use common::{Input, median, ratio, sorted};
 use obvhs::BvhBuildParams;
 use obvhs::ray::{Ray, RayHit};
 use obvhs::rt_triangle::RtTriangle;
@@ -74,23 +74,14 @@ fn rays(name: &str, scene: &Scene, side: u32, rounds: usize) {
         }
     }
 
-    let mut times = vec![Vec::new(); contestants.len()];
-    for round in 0..rounds {
-        let mut order: Vec<usize> = (0..contestants.len()).collect();
-        if round % 2 == 1 {
-            order.reverse();
-        }
-        for i in order {
-            times[i].push((contestants[i].1)());
-        }
-    }
+    let mut runs: Vec<&mut dyn FnMut() -> f64> = contestants.iter_mut().map(|c| &mut *c.1 as _).collect();
+    let times = common::interleaved(&mut runs, rounds);
     println!("{name}: {} triangles, P at {side}x{side}, {rounds} interleaved rounds", scene.triangles.len());
     for ((label, _), own) in contestants.iter().zip(&times) {
         let rate = size.pixels() as f64 / median(own) * 1e-3;
         print!("  {label:22} median {:8.2} ms, fastest {:8.2} ms, {rate:6.2} Mrays/s", median(own), sorted(own)[0]);
-        let ratios: Vec<f64> = times[0].iter().zip(own).map(|(obvhs, own)| obvhs / own).collect();
-        let (low, high) = sign_test_interval(&ratios);
-        println!(", {:.3} ({low:.3} to {high:.3}) of obvhs's rays per second", median(&ratios));
+        let (middle, low, high) = ratio(&times[0], own);
+        println!(", {middle:.3} ({low:.3} to {high:.3}) of obvhs's rays per second");
     }
 }
 

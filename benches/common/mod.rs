@@ -108,6 +108,29 @@ impl BHShape<f32, 3> for Shape {
     }
 }
 
+/// Runs every contestant once a round, in an order that turns round every other time (ABBA), so that a machine that is
+/// busy or changes its clock disturbs all of them alike. Returns what each measured, by contestant and round.
+pub fn interleaved(contestants: &mut [&mut dyn FnMut() -> f64], rounds: usize) -> Vec<Vec<f64>> {
+    let mut times = vec![Vec::new(); contestants.len()];
+    for round in 0..rounds {
+        let mut order: Vec<usize> = (0..contestants.len()).collect();
+        if round % 2 == 1 {
+            order.reverse();
+        }
+        for i in order {
+            times[i].push((contestants[i])());
+        }
+    }
+    times
+}
+
+/// The median of the rounds' ratios, and the interval that an exact sign test gives at about 95 %.
+pub fn ratio(above: &[f64], below: &[f64]) -> (f64, f64, f64) {
+    let ratios: Vec<f64> = above.iter().zip(below).map(|(a, b)| a / b).collect();
+    let (low, high) = sign_test_interval(&ratios);
+    (median(&ratios), low, high)
+}
+
 /// In ascending order.
 pub fn sorted(values: &[f64]) -> Vec<f64> {
     let mut sorted = values.to_vec();

@@ -242,7 +242,7 @@ fn check(
     let twin = (size == SMALL).then_some(&candidate.built.structure);
     let method = candidate.selection.method();
     let start = Instant::now();
-    let verdict = subject.verifier.check(prepared, method, twin, *config, &path.views[frame], size, context.exact)?;
+    let verdict = subject.verifier.check(prepared, method, twin, (*config, &path.views[frame], size), context.exact)?;
     checked.seconds += start.elapsed().as_secs_f64();
     checked.verification.push(Verification {
         frame,

@@ -141,9 +141,7 @@ impl<'a> Verifier<'a> {
         prepared: &mut dyn Prepared,
         method: Method,
         twin: Option<&Structure>,
-        config: Config,
-        view: &View,
-        size: Size,
+        (config, view, size): (Config, &View, Size),
         exact: bool,
     ) -> Result<Verdict> {
         let timed = prepared.image(config, view, size)?;

@@ -46,7 +46,7 @@ fn seen_by(method: Method, size: Size, column: u32, row: u32) -> (u32, u32) {
     match method.pattern {
         Pattern::Image => (column, row),
         Pattern::Four => {
-            let one_of = |place: u32, group: u32, side: u32| side / 4 + (place / group & 1) * (side / 2);
+            let one_of = |place: u32, group: u32, side: u32| side / 4 + ((place / group) & 1) * (side / 2);
             (one_of(column, method.group.width, size.width), one_of(row, method.group.height, size.height))
         }
     }

@@ -71,7 +71,7 @@ fn judge(exact: bool, timed: &dyn Fn(&mut Vec<Pixel>), counting: &dyn Fn(&mut Ve
     let mut spoiled = Spoiled { inner, timed, counting };
     let mut verifier = Verifier::new(&scene, &tree.structure).unwrap();
     let twin = Some(&built.structure);
-    verifier.check(&mut spoiled, selection.method(), twin, Config::PS, &view(&scene), SIZE, exact).unwrap()
+    verifier.check(&mut spoiled, selection.method(), twin, (Config::PS, &view(&scene), SIZE), exact).unwrap()
 }
 
 /// A pixel that hits something.
@@ -192,6 +192,6 @@ fn a_wrong_reference_is_noticed() {
     let mut prepared = cpu.prepare(&scene, &tree, selection.method()).unwrap();
     let mut verifier = Verifier::new(&scene, &tree).unwrap();
     let verdict =
-        verifier.check(prepared.as_mut(), selection.method(), None, Config::P, &view(&scene), SIZE, true).unwrap();
+        verifier.check(prepared.as_mut(), selection.method(), None, (Config::P, &view(&scene), SIZE), true).unwrap();
     assert!(!verdict.ok && verdict.message.contains("brute force"), "{}", verdict.message);
 }
