@@ -28,6 +28,8 @@ pub struct Frame<'a> {
     pub size: Size,
     /// Rays that go together: the method's work-group where that matters to the traversal, otherwise 8 x 8.
     pub group: Group,
+    /// Where each of them lies in its group.
+    places: Lanes<(u32, u32)>,
     method: Method,
     grid: PixelGrid,
     lights: &'a [Light],
@@ -77,7 +79,8 @@ impl<'a> Frame<'a> {
     ) -> Self {
         let grid = view.camera.pixel_grid(size.width, size.height);
         let group = if method.traversal.is_together() { method.group } else { Group::SQUARE };
-        Frame { scene, triangles, config, size, group, method, grid, lights: &view.lights, epsilon }
+        let places = std::array::from_fn(|lane| group.place(lane as u32));
+        Frame { scene, triangles, config, size, group, places, method, grid, lights: &view.lights, epsilon }
     }
 
     fn primary_ray(&self, column: u32, row: u32) -> Ray {
@@ -94,7 +97,7 @@ impl<'a> Frame<'a> {
         mut store: impl FnMut(u32, u32, CountedPixel),
     ) {
         let place = |lane: usize| {
-            let (x, y) = self.group.place(lane as u32);
+            let (x, y) = self.places[lane];
             (column + x, row + y)
         };
         let inside = (0..self.group.size() as usize)
