@@ -72,13 +72,20 @@ fn row_of_groups(y: u32, rows: u32) -> u32 {
     if (!SOFTWARE) {
         return y;
     }
+    // Without dividing by what is no constant, which takes such a driver hundreds of cycles
     let share = rows / THREADS;
     let longer = rows % THREADS; // so many shares have a row more
-    let before = longer * (share + 1u);
-    if (y < before) {
-        return y % (share + 1u) * THREADS + y / (share + 1u);
+    var place = y;
+    var thread = 0u;
+    loop {
+        let own = share + select(0u, 1u, thread < longer);
+        if (place < own) {
+            break;
+        }
+        place -= own;
+        thread += 1u;
     }
-    return (y - before) % share * THREADS + longer + (y - before) / share;
+    return place * THREADS + thread;
 }
 
 // The pixel through which a pixel's ray goes: itself, or with FOUR_RAYS one of four for the whole work-group.

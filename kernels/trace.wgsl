@@ -45,8 +45,8 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     } else {
         let record = nearest_hit(ray, alive);
         if (record != MISS) {
-            let r = records[record];
-            let found = intersect(ray, vertices[r.x].position.xyz, vertices[r.y].position.xyz, vertices[r.z].position.xyz);
+            let r = read_record(record);
+            let found = intersect(ray, read_position(r.x), read_position(r.y), read_position(r.z));
             hit = GivenHit(found.t, r.w);
         }
     }

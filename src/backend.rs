@@ -204,6 +204,15 @@ pub trait Backend {
     ) -> Result<Box<dyn Prepared + 'a>>;
 }
 
+/// The identity of a compiled kernel.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct KernelInfo {
+    /// First 16 digits of BLAKE3 of its text: equal for kernels that are equal.
+    pub hash: String,
+    /// Where it reads scene and structure from: `buffers` or `textures`.
+    pub fetch: String,
+}
+
 /// A scene and a structure on a device, with one traversal.
 pub trait Prepared {
     /// One frame by the timed kernel, into buffers filled with [`POISON`]; rows from the top.
@@ -231,6 +240,11 @@ pub trait Prepared {
     /// Traces given rays: the nearest hit, or with `any_hit` whether anything is hit at all (`triangle` is 0 then, and
     /// `t` is 0).
     fn trace(&mut self, rays: &[GivenRay], any_hit: bool) -> Result<Vec<Hit>>;
+
+    /// What the timed kernel is; `None` where nothing is compiled for a device.
+    fn kernel(&self, _config: Config) -> Result<Option<KernelInfo>> {
+        Ok(None)
+    }
 
     /// Bytes allocated on the device for geometry (vertices, materials, lights) and for the structure (nodes and
     /// records), in this order.

@@ -1,13 +1,4 @@
-// BVH nodes and references to them.
-
-struct Node {
-    lo: vec3<f32>,
-    reference: u32,
-    hi: vec3<f32>,
-    count: u32, // records of a leaf; 0 for an inner node
-}
-
-@group(0) @binding(6) var<storage, read> nodes: array<Node>;
+// References to BVH nodes.
 
 // What a node leads to, in one word (packed by src/gpu/upload.rs): the left child of an inner node, which the right one
 // follows, or with the top bit set four bits of count and 27 bits of first record.

@@ -3,8 +3,6 @@
 // The distances of the next cell borders are computed from the cell's index, not summed up: with the formula that the
 // builder used (src/accel/grid.rs), so that a triangle at distance t lies in the cell that the ray is in at t.
 
-@group(0) @binding(6) var<storage, read> cells: array<vec2<u32>>; // first record, number of records
-
 struct Walk {
     cell: vec3<i32>,
     step: vec3<i32>,
@@ -42,9 +40,10 @@ fn start_walk(ray: Ray, limit: f32) -> Walk {
     return walk;
 }
 
-fn cell_index(cell: vec3<i32>) -> u32 {
+// A cell's first record, and how many it has.
+fn read_cell(cell: vec3<i32>) -> vec2<u32> {
     let c = vec3<u32>(cell);
-    return c.x + structure.resolution.x * (c.y + structure.resolution.y * c.z);
+    return read_pair(c.x + structure.resolution.x * (c.y + structure.resolution.y * c.z));
 }
 
 // Go to the neighbour behind the nearest border; false if that leaves the grid.

@@ -1,4 +1,4 @@
-// The scene in storage buffers, and the test of one stored triangle.
+// The scene and its structure as they lie in memory, and the test of one stored triangle.
 
 struct Vertex {
     position: vec4<f32>,
@@ -19,6 +19,14 @@ struct Light {
     colour: vec4<f32>,
 }
 
+// A BVH's node.
+struct Node {
+    lo: vec3<f32>,
+    reference: u32,
+    hi: vec3<f32>,
+    count: u32, // records of a leaf; 0 for an inner node
+}
+
 // What the structure needs beside its nodes; filled by src/gpu/upload.rs from the built structure.
 struct Structure {
     bounds_min: vec3<f32>,
@@ -36,9 +44,10 @@ struct Octant {
     end: vec4<i32>,  // first cell index outside the grid per axis
 }
 
-@group(0) @binding(1) var<storage, read> vertices: array<Vertex>;
-@group(0) @binding(2) var<storage, read> records: array<vec4<u32>>; // three vertices and the triangle's index
 @group(0) @binding(7) var<uniform> structure: Structure;
+
+// read_vertex, read_position, read_record (three vertices and the triangle's index), read_node and read_pair
+//!slot memory
 
 // The nearest hit so far. Of equal distances the lower triangle index wins, so that the order of tests is no matter.
 struct Best {
@@ -51,10 +60,10 @@ fn no_best() -> Best {
 }
 
 fn test_record(ray: Ray, record: u32, best: ptr<function, Best>) {
-    let r = records[record].xyz;
-    let hit = intersect(ray, vertices[r.x].position.xyz, vertices[r.y].position.xyz, vertices[r.z].position.xyz);
+    let r = read_record(record);
+    let hit = intersect(ray, read_position(r.x), read_position(r.y), read_position(r.z));
     if (hit.t <= (*best).t) {
-        if (hit.t < (*best).t || records[record].w < records[(*best).record].w) {
+        if (hit.t < (*best).t || r.w < read_record((*best).record).w) {
             *best = Best(hit.t, record);
         }
     }
@@ -62,7 +71,7 @@ fn test_record(ray: Ray, record: u32, best: ptr<function, Best>) {
 
 // True if the triangle is hit at a distance below `limit`.
 fn record_blocks(ray: Ray, record: u32, limit: f32) -> bool {
-    let r = records[record];
-    let hit = intersect(ray, vertices[r.x].position.xyz, vertices[r.y].position.xyz, vertices[r.z].position.xyz);
+    let r = read_record(record);
+    let hit = intersect(ray, read_position(r.x), read_position(r.y), read_position(r.z));
     return hit.t < limit;
 }

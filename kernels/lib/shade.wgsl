@@ -17,10 +17,10 @@ struct Surface {
 // The traversal returned only which record was hit; distance and barycentric coordinates are computed anew, which
 // costs less than carrying them through the traversal in registers.
 fn surface_at(ray: Ray, record: u32, epsilon: f32) -> Surface {
-    let r = records[record];
-    let a = vertices[r.x];
-    let b = vertices[r.y];
-    let c = vertices[r.z];
+    let r = read_record(record);
+    let a = read_vertex(r.x);
+    let b = read_vertex(r.y);
+    let c = read_vertex(r.z);
     let hit = intersect(ray, a.position.xyz, b.position.xyz, c.position.xyz);
     let w = 1.0 - hit.u - hit.v;
     var geometric = unit(cross3(b.position.xyz - a.position.xyz, c.position.xyz - a.position.xyz));

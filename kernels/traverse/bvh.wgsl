@@ -70,7 +70,7 @@ fn pop() {
 fn start_packet() -> u32 {
     if (lane == 0u) {
         stack_depth = 0u;
-        next = vec2<u32>(nodes[0].reference, 0u);
+        next = vec2<u32>(read_node(0u).reference, 0u);
     }
     return workgroupUniformLoad(&next).x;
 }
@@ -81,8 +81,8 @@ fn visit_inner(ray: Ray, node: u32, t: f32, alive: bool) -> u32 {
     if (alive) {
         count_inner();
     }
-    let left = nodes[node];
-    let right = nodes[node + 1u];
+    let left = read_node(node);
+    let right = read_node(node + 1u);
     let l = ray_box(ray, left.lo, left.hi);
     let r = ray_box(ray, right.lo, right.hi);
     atomicAdd(&tally, select(NO_VOTE, wish(l, r, wanted(l, t), wanted(r, t)), alive));

@@ -16,7 +16,7 @@ struct Walk {
 }
 
 fn start_walk(ray: Ray, limit: f32) -> Walk {
-    let root = nodes[0];
+    let root = read_node(0u);
     stack[0] = EMPTY;
     stack_t[0] = -1.0;
     return Walk(select(EMPTY, root.reference, wanted(ray_box(ray, root.lo, root.hi), limit)), 1u);
@@ -40,8 +40,8 @@ fn pop(t: f32, walk: ptr<function, Walk>) {
 fn walk_to_leaf(ray: Ray, t: f32, walk: ptr<function, Walk>) {
     while (!is_leaf((*walk).node)) {
         count_inner();
-        let left = nodes[(*walk).node];
-        let right = nodes[(*walk).node + 1u];
+        let left = read_node((*walk).node);
+        let right = read_node((*walk).node + 1u);
         let l = ray_box(ray, left.lo, left.hi);
         let r = ray_box(ray, right.lo, right.hi);
         let go_left = wanted(l, t);

@@ -15,7 +15,7 @@ fn nearest_hit(ray: Ray, alive: bool) -> u32 {
     loop {
         // Test everything in this cell
         count_inner();
-        let cell = cells[cell_index(walk.cell)];
+        let cell = read_cell(walk.cell);
         for (var i = cell.x; i < cell.x + cell.y; i += 1u) {
             count_test();
             test_record(ray, i, &best);
@@ -40,7 +40,7 @@ fn any_hit(ray: Ray, limit: f32, alive: bool) -> bool {
     }
     loop {
         count_inner();
-        let cell = cells[cell_index(walk.cell)];
+        let cell = read_cell(walk.cell);
         for (var i = cell.x; i < cell.x + cell.y; i += 1u) {
             count_test();
             if (record_blocks(ray, i, limit)) {

@@ -62,8 +62,8 @@ fn do_test(test: u32, ray: u32) -> Found {
         before = running[ray - 1u];
     }
     let record = first_record[ray] + test - before;
-    let r = records[record];
-    let hit = intersect(group_ray[ray], vertices[r.x].position.xyz, vertices[r.y].position.xyz, vertices[r.z].position.xyz);
+    let r = read_record(record);
+    let hit = intersect(group_ray[ray], read_position(r.x), read_position(r.y), read_position(r.z));
     if (hit.t > T_MAX) {
         return NOTHING;
     }
@@ -96,7 +96,7 @@ fn find(ray: Ray, limit: f32, anything: bool, alive: bool) -> Found {
         var tests = 0u;
         while (searching && tests == 0u) {
             count_inner();
-            let cell = cells[cell_index(walk.cell)];
+            let cell = read_cell(walk.cell);
             first_record[lane] = cell.x;
             tests = cell.y;
             if (tests == 0u) {

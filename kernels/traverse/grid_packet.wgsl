@@ -138,7 +138,7 @@ fn cell_at(main: u32, slice: i32, i: i32, j: i32) -> vec2<u32> {
     } else if (main == 2u) {
         cell = cell.yzx;
     }
-    return cells[cell_index(cell)];
+    return read_cell(cell);
 }
 
 // The nearest hit before `limit`; with `anything`, some hit. Reached by the whole work-group.

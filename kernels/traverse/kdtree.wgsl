@@ -3,8 +3,6 @@
 
 //!include lib/alone.wgsl
 
-@group(0) @binding(6) var<storage, read> nodes: array<vec2<u32>>; // word, link: src/accel/kdtree.rs
-
 const RING: u32 = max(SHORT_STACK, 1u);
 
 //!slot short_stack
@@ -99,7 +97,7 @@ fn nearest_hit(ray: Ray, alive: bool) -> u32 {
         return MISS;
     }
     loop {
-        let node = nodes[d.node];
+        let node = read_pair(d.node); // word, link: src/accel/kdtree.rs
         if ((node.y & 3u) == 3u) {
             count_leaf();
             for (var i = node.x; i < node.x + (node.y >> 2u); i += 1u) {
@@ -127,7 +125,7 @@ fn any_hit(ray: Ray, limit: f32, alive: bool) -> bool {
         return false;
     }
     loop {
-        let node = nodes[d.node];
+        let node = read_pair(d.node); // word, link: src/accel/kdtree.rs
         if ((node.y & 3u) == 3u) {
             count_leaf();
             for (var i = node.x; i < node.x + (node.y >> 2u); i += 1u) {

@@ -78,6 +78,18 @@ pub enum Pattern {
     Four,
 }
 
+/// Where a kernel reads the scene and the structure from; a CPU twin does not care.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Fetch {
+    /// What the device is good at: textures where it computes on the CPU and they hold everything, buffers elsewhere.
+    #[default]
+    Auto,
+    /// Storage buffers.
+    Buffers,
+    /// Textures whose texels are plain words.
+    Textures,
+}
+
 /// Pixels of a work-group: both powers of two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Group {
@@ -130,6 +142,8 @@ pub struct Method {
     pub tiles: u32,
     /// Compile the kernel with bounds checks and loop bounds.
     pub checked: bool,
+    /// Where it reads from.
+    pub fetch: Fetch,
 }
 
 /// What of a method decides which rays there are: methods that agree in it make the same image.
@@ -161,6 +175,7 @@ impl From<Traversal> for Method {
             group: Group::SQUARE,
             tiles: 1,
             checked: false,
+            fetch: Fetch::default(),
         }
     }
 }

@@ -172,6 +172,12 @@ pub const COMMON_OPTIONS: &[OptionInfo] = &[
         meaning: "compile the kernel with bounds checks and loop bounds",
         kind: Kind::Word(&["off", "on"]),
     },
+    OptionInfo {
+        key: "fetch",
+        default: "auto",
+        meaning: "read scene and structure from storage buffers or textures (auto: buffers, on software drivers textures)",
+        kind: Kind::Word(&["auto", "buffers", "textures"]),
+    },
 ];
 
 /// All variants, in the order of tables.

@@ -1,7 +1,7 @@
 //! One structure as a user selects it, and what it takes to build it.
 
 use super::Structure;
-use super::method::{Group, Method, Pattern, ShadowRays};
+use super::method::{Fetch, Group, Method, Pattern, ShadowRays};
 use super::registry::{OptionInfo, VariantInfo, variants};
 use crate::error::{Error, Result};
 use crate::scene::Scene;
@@ -90,6 +90,11 @@ impl Selection {
             group: Group { width: side(width), height: side(height) },
             tiles: self.count("tiles").unwrap_or(1),
             checked: self.value("checks") == "on",
+            fetch: match self.value("fetch") {
+                "buffers" => Fetch::Buffers,
+                "textures" => Fetch::Textures,
+                _ => Fetch::Auto,
+            },
         }
     }
 

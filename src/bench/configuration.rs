@@ -154,6 +154,7 @@ pub fn measure(
     let config = subject.paths[path].0;
     let mut record = blank(context.plan, subject, candidate.selection, path, size);
     describe(&mut record, candidate);
+    record.kernel = prepared.kernel(config)?;
 
     // On the small image, with the twin, once for all sizes.
     if !candidate.small.contains_key(&config) {

@@ -4,6 +4,7 @@
 pub mod configuration;
 pub mod environment;
 pub mod measure;
+pub mod pictures;
 pub mod plan;
 pub mod preset;
 pub mod sweep;

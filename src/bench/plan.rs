@@ -227,6 +227,12 @@ impl Plan {
         tasks
     }
 
+    /// The size of a scene's first row; 1x1 for a scene without rows.
+    pub fn first_size(&self, what: &str) -> Size {
+        let sizes = self.parts.iter().filter(|part| part.scene == what).flat_map(|part| &part.sizes);
+        sizes.copied().next().unwrap_or(Size { width: 1, height: 1 })
+    }
+
     /// Rays that measuring one configuration traces, roughly: the passes and the counting of every frame.
     pub fn work(&self, config: Config, size: Size, views: &[View]) -> u64 {
         let lights = views.first().map_or(0, |v| v.lights.len() as u64);

@@ -3,6 +3,7 @@
 
 use super::configuration::{self, Candidate, Context, Subject};
 use super::environment;
+use super::pictures;
 use super::plan::{self, Path, Plan, Task};
 use super::verify::Verifier;
 use crate::accel::{Built, Selection};
@@ -158,6 +159,7 @@ impl Sweep<'_, '_> {
             verifier: Verifier::new(&scene, &reference.structure)?,
             images: HashMap::new(),
         };
+        self.pictures(&subject, &reference)?;
         // Each distinct tree is built once, serves all traversals over it, and is freed before the next is built.
         let mut waiting = plan.selections(what);
         while let Some(&first) = waiting.first() {
@@ -184,6 +186,24 @@ impl Sweep<'_, '_> {
             }
         }
         Ok(())
+    }
+
+    /// Take a scene's pictures. A device that is lost over them is opened again for the first measurement.
+    fn pictures(&mut self, subject: &Subject, tree: &Built) -> Result<()> {
+        let device = match self.device.take() {
+            Some(device) => device,
+            None => self.reopen()?,
+        };
+        match pictures::take(&mut self.context, subject, device.backend.as_ref(), tree) {
+            Err(Error::DeviceLost(message)) => {
+                self.say(Event::Note(format!("no pictures of {}: {message}", subject.record.name)));
+                Ok(())
+            }
+            other => {
+                self.device = Some(device);
+                other
+            }
+        }
     }
 
     /// Measure all traversals over one built structure.

@@ -148,10 +148,10 @@ fn paint(
     let min = values.iter().copied().min().unwrap_or(0);
     let max = values.iter().copied().max().unwrap_or(0);
     let mean = values.iter().map(|&v| f64::from(v)).sum::<f64>() / values.len().max(1) as f64;
-    let top = scale_max.unwrap_or(max).max(1);
+    let top = scale_max.unwrap_or(max);
     output::print(&format!(
         "{} per pixel: min {min}, mean {mean:.2}, max {max}; colours from dark blue (0) by way of red to yellow ({top})\n",
         heatmap.name(),
     ))?;
-    Ok(values.iter().flat_map(|&value| picture::heat(value as f32 / top as f32)).collect())
+    Ok(picture::heat_map(&values, top))
 }

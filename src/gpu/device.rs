@@ -3,6 +3,7 @@
 use super::adapters::{Selector, choose, describe, enumerate, wanted_features};
 use super::kernels::{Entry, Kernel};
 use super::prepared::GpuPrepared;
+use super::words::{FOUR_WORDS, Words, node_format};
 use crate::accel::{Method, Structure};
 use crate::backend::{Backend, DeviceInfo, DeviceType, Prepared};
 use crate::error::{Error, Result};
@@ -183,15 +184,19 @@ impl GpuBackend {
             ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: dynamic, min_binding_size: None },
             count: None,
         };
+        let words = |binding, format| wgpu::BindGroupLayoutEntry {
+            ty: Words::layout(kernel.textures, format),
+            ..entry(binding, wgpu::BufferBindingType::Uniform, false)
+        };
         let read = wgpu::BufferBindingType::Storage { read_only: true };
         let write = wgpu::BufferBindingType::Storage { read_only: false };
         let uniform = wgpu::BufferBindingType::Uniform;
         let mut entries = vec![
             entry(0, uniform, matches!(kernel.entry, Entry::Render { .. })),
-            entry(1, read, false),
-            entry(2, read, false),
+            words(1, FOUR_WORDS),
+            words(2, FOUR_WORDS),
             entry(3, read, false),
-            entry(6, read, false),
+            words(6, node_format(kernel.method.traversal)),
             entry(7, uniform, false),
             entry(8, write, false),
         ];

@@ -13,6 +13,8 @@ pub const FILES: &[(&str, &str)] = &[
     ("trace.wgsl", include_str!("../../kernels/trace.wgsl")),
     ("lib/geom.wgsl", include_str!("../../kernels/lib/geom.wgsl")),
     ("lib/scene.wgsl", include_str!("../../kernels/lib/scene.wgsl")),
+    ("lib/buffers.wgsl", include_str!("../../kernels/lib/buffers.wgsl")),
+    ("lib/textures.wgsl", include_str!("../../kernels/lib/textures.wgsl")),
     ("lib/shade.wgsl", include_str!("../../kernels/lib/shade.wgsl")),
     ("lib/count_off.wgsl", include_str!("../../kernels/lib/count_off.wgsl")),
     ("lib/count_on.wgsl", include_str!("../../kernels/lib/count_on.wgsl")),
@@ -62,7 +64,12 @@ pub struct Kernel {
     /// Threads of a driver that computes on the CPU, where the same results come by operations that are cheaper there; 0
     /// for a GPU.
     pub software_threads: u32,
+    /// Scene and structure lie in textures, not in storage buffers.
+    pub textures: bool,
 }
+
+/// Texels in a row of those textures. Every device has at least so many.
+pub const TEXTURE_WIDTH: u32 = 4096;
 
 /// Stack entries for a tree of `depth` levels and the EMPTY at the bottom: a multiple of 32, so that few different
 /// kernels are compiled.
@@ -133,6 +140,7 @@ impl Kernel {
         let mut assembly = Assembly {
             slots: [
                 ("short_stack", short_stack),
+                ("memory", if self.textures { "lib/textures.wgsl" } else { "lib/buffers.wgsl" }),
                 ("traversal", traversal_file(self.method.traversal)),
                 ("counting", if counting { "lib/count_on.wgsl" } else { "lib/count_off.wgsl" }),
                 ("store", if counting { "lib/store_counted.wgsl" } else { "lib/store_timed.wgsl" }),
@@ -160,6 +168,7 @@ impl Kernel {
         word("GROUP_WIDTH", self.method.group.width);
         word("GROUP_HEIGHT", self.method.group.height);
         word("GROUP_SIZE", self.method.group.size());
+        word("TEXTURE_WIDTH", TEXTURE_WIDTH);
         word("THREADS", self.software_threads.max(1));
         if let Traversal::KdTree(search) = self.method.traversal {
             word("SHORT_STACK", search.stack);
@@ -185,7 +194,7 @@ impl Kernel {
 }
 
 struct Assembly {
-    slots: [(&'static str, &'static str); 4],
+    slots: [(&'static str, &'static str); 5],
     seen: Vec<&'static str>,
     source: Source,
 }
@@ -261,7 +270,10 @@ pub fn all() -> Vec<Kernel> {
     let mut all = Vec::new();
     for method in methods() {
         for &entry in &entries {
-            all.extend([0, 2].map(|software_threads| Kernel { entry, method, stack_size: 32, software_threads }));
+            for textures in [false, true] {
+                let kernel = |software_threads| Kernel { entry, method, stack_size: 32, software_threads, textures };
+                all.extend([0, 2].map(kernel));
+            }
         }
     }
     all

@@ -6,6 +6,7 @@ pub mod kernels;
 mod prepared;
 mod shared;
 mod upload;
+mod words;
 
 pub use adapters::{Selector, adapters, choose};
 pub use device::{GpuBackend, GpuOptions};

@@ -63,7 +63,7 @@ impl<'a> GpuPrepared<'a> {
         Ok(GpuPrepared {
             backend,
             scene,
-            uploaded: backend.upload(scene, structure)?,
+            uploaded: backend.upload(scene, structure, method)?,
             method,
             stack_size: stack_size(depth),
             epsilon: surface_epsilon(scene.bounds()),
@@ -71,9 +71,10 @@ impl<'a> GpuPrepared<'a> {
         })
     }
 
-    fn kernel(&self, entry: Entry) -> Kernel {
+    fn kernel_of(&self, entry: Entry) -> Kernel {
         let software_threads = self.backend.software_threads();
-        Kernel { entry, method: self.method, stack_size: self.stack_size, software_threads }
+        let textures = self.uploaded.textures;
+        Kernel { entry, method: self.method, stack_size: self.stack_size, software_threads, textures }
     }
 
     /// Uploads the uniforms of all parts of all views.
@@ -128,32 +129,27 @@ impl<'a> GpuPrepared<'a> {
             offset: 0,
             size: wgpu::BufferSize::new(size_of::<FrameUniform>() as u64),
         });
-        let whole = |binding, buffer: &'_ wgpu::Buffer| (binding, buffer.clone());
-        let buffers = [
-            whole(1, &self.uploaded.vertices),
-            whole(2, &self.uploaded.records),
-            whole(3, &self.uploaded.materials),
-            whole(4, &self.uploaded.triangle_materials),
-            whole(5, &frames.lights),
-            whole(6, &self.uploaded.nodes),
-            whole(7, &self.uploaded.structure),
-            whole(8, output),
-        ];
-        self.bind(compiled, uniform, &buffers)
+        let others =
+            [(3, &self.uploaded.materials), (4, &self.uploaded.triangle_materials), (5, &frames.lights), (8, output)];
+        self.bind(compiled, uniform, &others)
     }
 
+    /// Binds scene and structure, `first` as number 0, and whatever else a kernel has.
     fn bind(
         &self,
         compiled: &Compiled,
         first: wgpu::BindingResource,
-        buffers: &[(u32, wgpu::Buffer)],
+        others: &[(u32, &wgpu::Buffer)],
     ) -> wgpu::BindGroup {
-        let mut entries = vec![wgpu::BindGroupEntry { binding: 0, resource: first }];
-        entries.extend(
-            buffers
-                .iter()
-                .map(|(binding, b)| wgpu::BindGroupEntry { binding: *binding, resource: b.as_entire_binding() }),
-        );
+        let scene = &self.uploaded;
+        let inputs = [(1, &scene.vertices), (2, &scene.records), (6, &scene.nodes)];
+        let mut entries: Vec<_> = [(0, first), (7, scene.structure.as_entire_binding())]
+            .into_iter()
+            .chain(inputs.map(|(binding, words)| (binding, words.binding())))
+            .chain(others.iter().map(|(binding, buffer)| (*binding, buffer.as_entire_binding())))
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+            .collect();
+        entries.sort_by_key(|entry| entry.binding);
         let layout = &compiled.bindings;
         self.backend.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
     }
@@ -229,7 +225,7 @@ impl<'a> GpuPrepared<'a> {
         if let Some(&bands) = self.bands.get(&(config, size)) {
             return Ok(bands);
         }
-        let compiled = self.backend.compiled(self.kernel(Entry::Render { config, counting: false }))?;
+        let compiled = self.backend.compiled(self.kernel_of(Entry::Render { config, counting: false }))?;
         let output = self.poisoned("the image", (size.pixels() * size_of::<Pixel>()) as u64)?;
         let narrow = self.parts(size, 1, size.height.div_ceil(64));
         let frames = self.frames(std::slice::from_ref(view), size, &narrow)?;
@@ -251,7 +247,7 @@ impl<'a> GpuPrepared<'a> {
 
 impl Prepared for GpuPrepared<'_> {
     fn image(&mut self, config: Config, view: &View, size: Size) -> Result<Vec<Pixel>> {
-        let compiled = self.backend.compiled(self.kernel(Entry::Render { config, counting: false }))?;
+        let compiled = self.backend.compiled(self.kernel_of(Entry::Render { config, counting: false }))?;
         let output = self.poisoned("the image", (size.pixels() * size_of::<Pixel>()) as u64)?;
         let tiles = self.method.tiles;
         let bands = self.parts(size, tiles, tiles.max((size.pixels() as u32).div_ceil(BAND_PIXELS)));
@@ -271,7 +267,7 @@ impl Prepared for GpuPrepared<'_> {
         size: Size,
         band: &mut dyn FnMut(u32, &[CountedPixel]),
     ) -> Result<()> {
-        let compiled = self.backend.compiled(self.kernel(Entry::Render { config, counting: true }))?;
+        let compiled = self.backend.compiled(self.kernel_of(Entry::Render { config, counting: true }))?;
         let mut bands = self.parts(size, 1, (size.pixels() as u32).div_ceil(BAND_PIXELS));
         // Each begins at the output's start
         bands.iter_mut().for_each(|(_, first_pixel)| *first_pixel = 0);
@@ -299,7 +295,7 @@ impl Prepared for GpuPrepared<'_> {
         };
         let backend = self.backend;
         let bands = self.timing_parts(config, first_view, size)?;
-        let compiled = backend.compiled(self.kernel(Entry::Render { config, counting: false }))?;
+        let compiled = backend.compiled(self.kernel_of(Entry::Render { config, counting: false }))?;
         let output = self.poisoned("the image", (size.pixels() * size_of::<Pixel>()) as u64)?;
         let timestamps = backend.info().timestamp_period_ns;
         // As many frames at a time as a query set has room for
@@ -358,7 +354,7 @@ impl Prepared for GpuPrepared<'_> {
     }
 
     fn trace(&mut self, rays: &[GivenRay], any_hit: bool) -> Result<Vec<Hit>> {
-        let compiled = self.backend.compiled(self.kernel(Entry::Trace { any_hit }))?;
+        let compiled = self.backend.compiled(self.kernel_of(Entry::Trace { any_hit }))?;
         let mut hits = Vec::with_capacity(rays.len());
         for rays in rays.chunks(TRACE_RAYS) {
             let given: Vec<TraceRay> = rays
@@ -369,18 +365,7 @@ impl Prepared for GpuPrepared<'_> {
             let job = [rays.len() as u32, 0, 0, 0];
             let job = self.backend.filled("the job", bytemuck::cast_slice(&job), wgpu::BufferUsages::UNIFORM)?;
             let output = self.poisoned("the hits", (rays.len() * 8) as u64)?;
-            let bindings = self.bind(
-                &compiled,
-                job.as_entire_binding(),
-                &[
-                    (1, self.uploaded.vertices.clone()),
-                    (2, self.uploaded.records.clone()),
-                    (3, given),
-                    (6, self.uploaded.nodes.clone()),
-                    (7, self.uploaded.structure.clone()),
-                    (8, output.clone()),
-                ],
-            );
+            let bindings = self.bind(&compiled, job.as_entire_binding(), &[(3, &given), (8, &output)]);
             let mut encoder = self.backend.device.create_command_encoder(&Default::default());
             {
                 let mut pass = encoder.begin_compute_pass(&Default::default());
@@ -394,6 +379,13 @@ impl Prepared for GpuPrepared<'_> {
         }
         debug_assert!(hits.iter().all(|hit| hit.t <= T_MAX));
         Ok(hits)
+    }
+
+    fn kernel(&self, config: Config) -> Result<Option<KernelInfo>> {
+        let kernel = self.kernel_of(Entry::Render { config, counting: false });
+        let hash = kernel.assemble().map_err(Error::Device)?.hash();
+        let fetch = if kernel.textures { "textures" } else { "buffers" };
+        Ok(Some(KernelInfo { hash, fetch: fetch.to_owned() }))
     }
 
     fn allocated(&self) -> (u64, u64) {

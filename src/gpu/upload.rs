@@ -1,23 +1,27 @@
-//! Scene and structure in device buffers, and the ledger of their bytes.
+//! Scene and structure on a device, and the ledger of their bytes.
 
 use super::device::GpuBackend;
 use super::shared::StructureUniform;
+use super::words::{FOUR_WORDS, Words, node_format};
 use crate::accel::bvh::BvhNode;
+use crate::accel::method::Fetch;
 use crate::accel::octants::octants;
-use crate::accel::{Record, Structure};
+use crate::accel::{Method, Record, Structure};
 use crate::error::{Error, Result};
 use crate::math::Aabb;
 use crate::scene::Scene;
 use bytemuck::{NoUninit, Pod};
 use glam::Vec3;
 
-/// Buffers of one scene and one structure.
+/// One scene and one structure.
 pub(super) struct Uploaded {
-    pub vertices: wgpu::Buffer,
-    pub records: wgpu::Buffer,
+    pub vertices: Words,
+    pub records: Words,
+    pub nodes: Words,
+    /// These three are textures.
+    pub textures: bool,
     pub materials: wgpu::Buffer,
     pub triangle_materials: wgpu::Buffer,
-    pub nodes: wgpu::Buffer,
     pub structure: wgpu::Buffer,
     /// Bytes of vertices, materials and the triangles' materials.
     pub geometry_bytes: u64,
@@ -70,8 +74,8 @@ impl GpuBackend {
         )))
     }
 
-    /// Uploads a scene and a structure.
-    pub(super) fn upload(&self, scene: &Scene, structure: &Structure) -> Result<Uploaded> {
+    /// Uploads a scene and a structure for a method.
+    pub(super) fn upload(&self, scene: &Scene, structure: &Structure, method: Method) -> Result<Uploaded> {
         let packed: Vec<BvhNode>;
         let (records, nodes): (&[Record], &[u8]) = match structure {
             Structure::Brute(brute) => (&brute.records, &[]),
@@ -85,12 +89,29 @@ impl GpuBackend {
         };
         let triangle_materials: Vec<u32> = scene.triangles.iter().map(|t| t.material).collect();
         let size = |bytes: &[u8]| bytes.len() as u64;
+        let inputs = [
+            ("the vertices", bytes(&scene.vertices), FOUR_WORDS),
+            ("the structure's triangle records", bytes(records), FOUR_WORDS),
+            ("the structure's nodes or cells", nodes, node_format(method.traversal)),
+        ];
+        let textures = match method.fetch {
+            Fetch::Auto => {
+                self.software_threads() > 0
+                    && inputs.iter().all(|(_, contents, format)| self.fits_texture(contents, *format))
+            }
+            Fetch::Buffers => false,
+            Fetch::Textures => true,
+        };
+        let structure_bytes = size(nodes) + size(bytes(records));
+        let [vertices, records, nodes] =
+            inputs.map(|(what, contents, format)| self.words(what, contents, format, textures));
         let uploaded = Uploaded {
-            vertices: self.storage("the vertices", &scene.vertices)?,
-            records: self.storage("the structure's triangle records", records)?,
+            vertices: vertices?,
+            records: records?,
+            nodes: nodes?,
+            textures,
             materials: self.storage("the materials", &scene.materials)?,
             triangle_materials: self.storage("the triangles' materials", &triangle_materials)?,
-            nodes: self.storage("the structure's nodes or cells", nodes)?,
             structure: self.filled(
                 "the structure's constants",
                 bytemuck::bytes_of(&structure_uniform(structure)),
@@ -99,7 +120,7 @@ impl GpuBackend {
             geometry_bytes: size(bytes(&scene.vertices))
                 + size(bytes(&scene.materials))
                 + size(bytes(&triangle_materials)),
-            structure_bytes: size(nodes) + size(bytes(records)),
+            structure_bytes,
         };
         self.check()?;
         Ok(uploaded)

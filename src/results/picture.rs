@@ -41,6 +41,22 @@ pub fn heat(value: f32) -> [u8; 4] {
     }
 }
 
+/// Values as colours, `top` and everything above it in the brightest: RGBA8.
+pub fn heat_map(values: &[u32], top: u32) -> Vec<u8> {
+    let top = top.max(1) as f32;
+    values.iter().flat_map(|&value| heat(value as f32 / top)).collect()
+}
+
+/// The value that one in two hundred exceeds: a few extreme pixels shall not darken all the others. 0 for no values.
+pub fn most_but_few(values: &[u32]) -> u32 {
+    let mut sorted = values.to_vec();
+    let place = values.len().saturating_sub(1) - values.len() / 200;
+    match sorted.is_empty() {
+        true => 0,
+        false => *sorted.select_nth_unstable(place).1,
+    }
+}
+
 /// OKLab to linear sRGB (B. Ottosson, "A perceptual color space for image processing", 2020).
 fn from_oklab(lightness: f32, a: f32, b: f32) -> [f32; 3] {
     let l = (lightness + 0.396_337_8 * a + 0.215_803_76 * b).powi(3);

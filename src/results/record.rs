@@ -1,7 +1,7 @@
 //! The schema of a journal: one [`Record`] per line, the first one a [`Provenance`].
 
 use crate::accel::Properties;
-use crate::backend::{Config, Counters, DeviceInfo};
+use crate::backend::{Config, Counters, DeviceInfo, KernelInfo};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -311,6 +311,9 @@ pub struct ConfigurationRecord {
     pub image_hash: Option<String>,
     /// The same of the first structure measured with this scene, path, configuration and size: to compare with.
     pub reference_image_hash: Option<String>,
+    /// The timed kernel, on a device.
+    #[serde(default)]
+    pub kernel: Option<KernelInfo>,
     /// By ray type (primary, shadow, reflected), over all frames.
     pub counters: Option<[CounterSums; 3]>,
     /// Sizes.
@@ -351,6 +354,7 @@ impl ConfigurationRecord {
             difference: None,
             image_hash: None,
             reference_image_hash: None,
+            kernel: None,
             counters: None,
             memory: Memory::default(),
             build_ms: 0.0,

@@ -61,6 +61,9 @@ pub struct Row {
     /// Wall time of all passes over the sum of their frame times: what the harness adds.
     pub pass_overhead: Option<f64>,
     pub camera_path: String,
+    /// Where the kernel read scene and structure from, and its hash; empty for CPU twins.
+    pub fetch: Option<String>,
+    pub kernel_hash: Option<String>,
     pub shader_checks: bool,
     pub build_threads: usize,
     pub primary_inner_per_ray: Option<f64>,
@@ -200,6 +203,8 @@ impl Row {
             device_ms_mean: samples.and_then(|s| mean_of(s.device_ns.as_deref()?)),
             pass_overhead: samples.and_then(|s| pass_overhead(s, timed(record.timing_source, s)?)),
             camera_path: record.camera_path.name.clone(),
+            fetch: record.kernel.as_ref().map(|kernel| kernel.fetch.clone()),
+            kernel_hash: record.kernel.as_ref().map(|kernel| kernel.hash.clone()),
             shader_checks: device.checked,
             build_threads: record.build_threads,
             primary_inner_per_ray: per_ray(0, inner),

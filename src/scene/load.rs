@@ -94,6 +94,11 @@ fn load_entry(what: &str, entry: &catalogue::Entry, settings: &str, folder: Opti
 /// What every scene from a file goes through.
 fn finish(mut scene: Scene, place: &str, options: &Options) -> Result<Scene> {
     scene.transform(options.up, options.scale);
+    match (options.fov, &mut scene.camera) {
+        (Some(fov), Some(camera)) => camera.field_of_view = fov,
+        (Some(_), None) => scene.warnings.push("fov: there is no camera in the file that it could change".into()),
+        (None, _) => {}
+    }
     let path = Path::new(place);
     scene.complete().map_err(|(problem, mend)| Error::file(path, None, problem, mend))?;
     // A cache brings the number.

@@ -18,6 +18,8 @@ pub struct Options {
     pub up: Up,
     /// Factor on all lengths, applied last.
     pub scale: f32,
+    /// Field of view in degrees for the file's camera, instead of the file's own.
+    pub fov: Option<f32>,
     /// OBJ: the material that shines although the file does not say so (exporters lose it); its faces become lights.
     pub lamp: Option<String>,
 }
@@ -34,7 +36,16 @@ pub enum Up {
 
 impl Default for Options {
     fn default() -> Options {
-        Options { time: None, segments: None, cones: true, outside: false, up: Up::Y, scale: 1.0, lamp: None }
+        Options {
+            time: None,
+            segments: None,
+            cones: true,
+            outside: false,
+            up: Up::Y,
+            scale: 1.0,
+            fov: None,
+            lamp: None,
+        }
     }
 }
 
@@ -43,7 +54,7 @@ pub const MAX_SEGMENTS: u32 = 1024;
 
 impl Options {
     /// The names of all options.
-    pub const KEYS: [&str; 7] = ["time", "segments", "cones", "outside", "up", "scale", "lamp"];
+    pub const KEYS: [&str; 8] = ["time", "segments", "cones", "outside", "up", "scale", "fov", "lamp"];
 
     /// Reads `key=value,...`; `what` stands in errors.
     ///
@@ -80,6 +91,10 @@ impl Options {
                     Ok(scale) if (1e-20..=1e20).contains(&scale) => options.scale = scale,
                     _ => return Err(wrong("give a positive number")),
                 },
+                "fov" => match value.parse() {
+                    Ok(fov) if (0.1..=179.0).contains(&fov) => options.fov = Some(fov),
+                    _ => return Err(wrong("give 0.1 to 179 degrees")),
+                },
                 "lamp" => match value {
                     "" => return Err(wrong("give the name of a material")),
                     name => options.lamp = Some(name.to_owned()),
@@ -113,6 +128,9 @@ impl Options {
         }
         if self.scale != 1.0 {
             set.push(format!("scale={}", self.scale));
+        }
+        if let Some(fov) = self.fov {
+            set.push(format!("fov={fov}"));
         }
         if let Some(lamp) = &self.lamp {
             set.push(format!("lamp={lamp}"));

@@ -34,8 +34,8 @@ fn every_variant_is_valid() {
     let kernels = kernels::all();
     assert_eq!(
         kernels.len(),
-        kernels::methods().len() * 8 * 2,
-        "six render and two trace entries, two kinds of driver"
+        kernels::methods().len() * 8 * 4,
+        "six render and two trace entries, two kinds of driver, buffers and textures"
     );
     for variant in variants() {
         let method = Selection::parse(variant.name).unwrap().method();
@@ -55,6 +55,7 @@ fn a_broken_kernel_is_located() {
         method: Traversal::Bvh(Vote::Corrected).into(),
         stack_size: 32,
         software_threads: 2,
+        textures: false,
     };
     let mut source = assemble(&kernel);
     let (_, geom) = kernels::FILES.iter().find(|(name, _)| *name == "lib/geom.wgsl").unwrap();
@@ -100,6 +101,7 @@ fn struct_layouts_agree() {
             method: traversal.into(),
             stack_size: 32,
             software_threads: 0,
+            textures: false,
         };
         check(&assemble(&kernel)).unwrap()
     };
@@ -156,6 +158,7 @@ fn struct_layouts_agree() {
         method: Traversal::KdTree(KdSearch::THESIS).into(),
         stack_size: 8,
         software_threads: 0,
+        textures: false,
     };
     let module = &check(&assemble(&kernel)).unwrap();
     same_layout!(module, "GivenRay", TraceRay, [origin, direction]);

@@ -57,7 +57,7 @@ fn names() -> Vec<&'static str> {
 }
 
 /// Ways to walk a structure other than each one's own.
-const OTHERS: [&str; 13] = [
+const OTHERS: [&str; 21] = [
     "kdtree:search=restart",
     "kdtree:search=pushdown",
     "kdtree:stack=1",
@@ -71,6 +71,15 @@ const OTHERS: [&str; 13] = [
     "grid:group=32x1,tiles=3",
     "bvh-stack:group=16x16,checks=on",
     "bvh:tiles=2",
+    // Scene and structure in both kinds of memory, whichever a device would take by itself
+    "grid:fetch=buffers",
+    "kdtree:fetch=buffers",
+    "bvh:fetch=buffers",
+    "bvh-stack:fetch=buffers",
+    "grid:fetch=textures",
+    "kdtree:fetch=textures",
+    "bvh:fetch=textures",
+    "bvh-stack:fetch=textures",
 ];
 
 fn all_names() -> Vec<&'static str> {

@@ -7,8 +7,9 @@ use crate::thesis::data::Data;
 const DIFFERENCES: [(&str, &str); 10] = [
     (
         "The interface",
-        "Kernels were CUDA, here they are WGSL through wgpu and Vulkan. There are no textures and no constant memory for \
-         nodes and triangles: both are read from storage buffers, through whatever caches a device has.",
+        "Kernels were CUDA, here they are WGSL through wgpu and Vulkan. There is no constant memory for nodes \
+         and triangles: they are read from storage buffers, through whatever caches a device has, or on software drivers \
+         from textures.",
     ),
     (
         "Registers",

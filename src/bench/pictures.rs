@@ -1,0 +1,72 @@
+//! What a scene looks like and where its rays take long: two small pictures per scene in the run's folder, for whoever
+//! reads the numbers later. Nothing here is measured.
+
+use super::configuration::{Context, Subject};
+use super::sweep::Event;
+use crate::accel::{Built, Selection};
+use crate::backend::{Backend, Config, Size};
+use crate::error::{Error, Result};
+use crate::results::{files, picture};
+
+/// Folder below the run's: `SCENE.png`, and `SCENE-steps.png` with the traversal steps of each pixel.
+pub const FOLDER: &str = "pictures";
+
+/// The longer side of a picture, in pixels.
+const SIDE: u32 = 448;
+
+/// How the pictured rays go: one ray per thread, on the tree that the references are traced through.
+const STRUCTURE: &str = "bvh-stack";
+
+/// Renders both pictures on the measured device: the middle frame of the richest configuration's path, or the first one if
+/// the camera stands still. A device that
+/// cannot make them is mentioned and stops nothing.
+///
+/// # Errors
+/// [`Error::Output`], or a lost device.
+pub fn take(context: &mut Context, subject: &Subject, backend: &dyn Backend, tree: &Built) -> Result<()> {
+    let Some((config, _, path)) = subject.paths.iter().max_by_key(|(config, ..)| config_rank(*config)) else {
+        return Ok(());
+    };
+    let scene = &subject.record.name;
+    (context.watch)(Event::Doing(format!("picturing {scene}")));
+    // Where only the light moves, half-way it stands behind the object
+    let middle = &path.views[path.views.len() / 2];
+    let moving = middle.camera.position != path.views[0].camera.position;
+    let view = if moving { middle } else { &path.views[0] };
+    let size = size_like(context.plan.first_size(&subject.what));
+    let Size { width, height } = size;
+    let render = || -> Result<(Vec<u8>, Vec<u8>)> {
+        let mut prepared = backend.prepare(subject.scene, &tree.structure, Selection::parse(STRUCTURE)?.method())?;
+        let image = prepared.image(*config, view, size)?.iter().flat_map(|pixel| pixel.rgba.to_le_bytes()).collect();
+        let mut steps: Vec<u32> = Vec::with_capacity(size.pixels());
+        prepared.counted(*config, view, size, &mut |_, pixels| {
+            steps.extend(pixels.iter().map(|p| p.counters.iter().map(|c| c.steps()).sum::<u32>()));
+        })?;
+        Ok((image, picture::heat_map(&steps, picture::most_but_few(&steps))))
+    };
+    let (image, steps) = match render() {
+        Ok(pictures) => pictures,
+        Err(Error::Device(message)) => {
+            (context.watch)(Event::Note(format!("no pictures of {scene}: {message}")));
+            return Ok(());
+        }
+        Err(other) => return Err(other),
+    };
+    let folder = context.out.join(FOLDER);
+    std::fs::create_dir_all(&folder).map_err(|source| Error::output(&folder, source))?;
+    let name = files::slug(scene);
+    picture::write_png(&folder.join(format!("{name}.png")), width, height, &image)?;
+    picture::write_png(&folder.join(format!("{name}-steps.png")), width, height, &steps)
+}
+
+/// The more kinds of rays, the richer.
+fn config_rank(config: Config) -> (u32, bool) {
+    (config.bounces(), config.shadows())
+}
+
+/// A size of the same shape whose longer side is [`SIDE`].
+fn size_like(size: Size) -> Size {
+    let longer = u64::from(size.width.max(size.height).max(1));
+    let side = |length: u32| ((u64::from(length) * u64::from(SIDE) / longer) as u32).max(1);
+    Size { width: side(size.width), height: side(size.height) }
+}
