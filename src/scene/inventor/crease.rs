@@ -59,7 +59,7 @@ impl Creased {
         let mut corners = places.iter();
         faces.visit(&mut |face: Face| {
             for &place in corners.by_ref().take(face.corners.len()) {
-                at[next[place as usize] as usize] = face.number as u32;
+                at[next[place as usize] as usize] = face.visit as u32;
                 next[place as usize] += 1;
             }
             Ok(())
@@ -67,7 +67,7 @@ impl Creased {
         Ok(Creased { cosine: angle.min(std::f64::consts::PI).cos(), normals, places, faces: at, begin })
     }
 
-    /// The normal of a corner, by its place in the order of visits, for its face; zero where there is none.
+    /// The normal of a corner for its face, both by their places in the order of visits; zero where there is none.
     pub fn normal(&self, corner: usize, face: usize) -> DVec3 {
         let own = self.normals[face];
         let place = self.places[corner] as usize;

@@ -22,8 +22,10 @@ pub struct Corner {
 pub struct Face<'c> {
     /// The part that it belongs to.
     pub part: usize,
-    /// Where it stands among all faces.
+    /// Where it stands among the faces of the file.
     pub number: usize,
+    /// Where it stands among those that are visited: a face of a mesh is visited as two triangles.
+    pub visit: usize,
     pub corners: &'c [Corner],
 }
 
@@ -98,25 +100,29 @@ impl<'t> Faces<'t> {
     /// # Errors
     /// An index is out of range, or what the visitor says.
     pub fn visit(&self, visit: Visit) -> Result<(), Fault> {
-        let mut number = 0;
-        let mut turned = |part: usize, corners: &mut [Corner]| {
+        let mut visits = 0;
+        let mut turned = |part: usize, number: usize, corners: &mut [Corner]| {
             if self.clockwise {
                 corners.reverse();
             }
-            visit(Face { part, number, corners })?;
-            number += 1;
+            visit(Face { part, number, visit: visits, corners })?;
+            visits += 1;
             Ok(())
         };
         match self.layout {
-            Layout::Polygons => self.runs(&mut turned),
-            Layout::Strips => self.runs(&mut |part, corners| {
-                for (k, window) in corners.windows(3).enumerate() {
-                    let [a, b, c] = [window[0], window[1], window[2]];
-                    // Every other triangle of a strip turns the other way
-                    turned(part, &mut if k % 2 == 0 { [a, b, c] } else { [b, a, c] })?;
-                }
-                Ok(())
-            }),
+            Layout::Polygons => self.runs(&mut |run, corners| turned(run, run, corners)),
+            Layout::Strips => {
+                let mut number = 0;
+                self.runs(&mut |part, corners| {
+                    for (k, window) in corners.windows(3).enumerate() {
+                        let [a, b, c] = [window[0], window[1], window[2]];
+                        // Every other triangle of a strip turns the other way
+                        turned(part, number, &mut if k % 2 == 0 { [a, b, c] } else { [b, a, c] })?;
+                        number += 1;
+                    }
+                    Ok(())
+                })
+            }
             Layout::Mesh { rows, columns } => {
                 let needed = rows.saturating_mul(columns).saturating_add(self.start);
                 if needed > self.coordinates.len() {
@@ -125,8 +131,12 @@ impl<'t> Faces<'t> {
                 let corner = |row: usize, column: usize| self.plain(self.start + row * columns + column);
                 for row in 1..rows {
                     for column in 1..columns {
-                        let quad = [(row - 1, column - 1), (row, column - 1), (row, column), (row - 1, column)];
-                        turned(row - 1, &mut quad.map(|(row, column)| corner(row, column)))?;
+                        let [a, b] = [corner(row - 1, column - 1), corner(row, column - 1)];
+                        let [c, d] = [corner(row - 1, column), corner(row, column)];
+                        // As in the strip that the format's library makes of a row
+                        let number = (row - 1) * (columns - 1) + column - 1;
+                        turned(row - 1, number, &mut [a, b, c])?;
+                        turned(row - 1, number, &mut [c, b, d])?;
                     }
                 }
                 Ok(())
@@ -199,24 +209,24 @@ impl<'t> Faces<'t> {
 /// Which of several normals or materials a corner has.
 pub struct Choice<'t> {
     binding: Binding,
-    /// Indices, where the file has them.
+    /// Indices of its own, where the file has them.
     indices: Option<(&'t Field, &'t [f64])>,
-    /// True if corners without indices go by their positions'.
-    by_coordinate: bool,
+    /// Those of the coordinates, which stand for them where it does not.
+    instead: Option<&'t [f64]>,
 }
 
 impl<'t> Choice<'t> {
     /// The choice of a set of faces; `field` is the name of its indices.
     pub fn of(node: &'t Node, field: &str, (binding, indexed): (Binding, bool)) -> Result<Choice<'t>, Fault> {
-        let has_indices = matches!(node.kind, Kind::IndexedFaceSet | Kind::IndexedTriangleStripSet);
-        let indices = match node.field(field).filter(|_| indexed && has_indices) {
+        if !indexed || !matches!(node.kind, Kind::IndexedFaceSet | Kind::IndexedTriangleStripSet) {
+            return Ok(Choice { binding, indices: None, instead: None });
+        }
+        let own = |field: &'t Field| {
             // The default is -1: go by coordIndex
-            Some(field) => {
-                node.numbers(field.name)?.filter(|list| !matches!(list, [] | [-1.0])).map(|list| (field, list))
-            }
-            None => None,
+            Ok(node.numbers(field.name)?.filter(|list| !matches!(list, [] | [-1.0])).map(|list| (field, list)))
         };
-        Ok(Choice { binding, indices, by_coordinate: indexed })
+        let indices = node.field(field).map_or(Ok(None), own)?;
+        Ok(Choice { binding, indices, instead: node.numbers("coordIndex")? })
     }
 
     /// True if it is always the first.
@@ -236,18 +246,23 @@ impl<'t> Choice<'t> {
 
     /// The index for a corner of a face.
     pub fn index(&self, face: &Face, corner: &Corner) -> Result<usize, Fault> {
-        let (at, own) = match self.binding {
+        let (at, number) = match self.binding {
             Binding::Overall => return Ok(0),
             Binding::Part => (face.part, face.part),
             Binding::Face => (face.number, face.number),
-            Binding::Vertex if self.by_coordinate => (corner.place, corner.coordinate),
             Binding::Vertex => (corner.place, corner.number),
         };
-        let Some((field, list)) = self.indices else { return Ok(own) };
-        match list.get(at) {
-            Some(&index) if index >= 0.0 && index.fract() == 0.0 => Ok(index as usize),
-            Some(index) => Err(field.fault(format!("{index}, number {at} of the list, is no index"))),
-            None => Err(field.fault(format!("{} indices are too few", list.len()))),
+        match (self.indices, self.instead) {
+            (Some((field, list)), _) => match list.get(at) {
+                Some(&index) if index >= 0.0 && index.fract() == 0.0 => Ok(index as usize),
+                Some(index) => Err(field.fault(format!("{index}, number {at} of the list, is no index"))),
+                None => Err(field.fault(format!("{} indices are too few", list.len()))),
+            },
+            // As in the format's own library, also for parts and faces; where a face ends there, it goes by its number
+            (None, Some(list)) => {
+                Ok(list.get(at).filter(|&&index| index >= 0.0).map_or(number, |&index| index as usize))
+            }
+            (None, None) => Ok(number),
         }
     }
 }

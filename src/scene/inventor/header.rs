@@ -25,8 +25,10 @@ pub fn dialect(bytes: &[u8]) -> Result<Dialect, Fault> {
             "binary Open Inventor",
             "ivcat of Debian's inventor-clients turns it into text: ivcat -o out.iv in.iv",
         ),
-        [b"#Inventor", b"V2.1", b"ascii", ..] => Ok(Dialect { crease_angle: 0.0 }),
-        [b"#Inventor", b"V2.0", b"ascii", ..] | [b"#VRML", b"V1.0", ..] => Ok(Dialect { crease_angle: 0.5 }),
+        // As in the format's own library
+        [b"#Inventor", b"V2.0" | b"V2.1", b"ascii", ..] => Ok(Dialect { crease_angle: 0.0 }),
+        // As its specification says
+        [b"#VRML", b"V1.0", ..] => Ok(Dialect { crease_angle: 0.5 }),
         [b"#VRML", b"V2.0", ..] => {
             fault("VRML 2.0 (VRML97) is another language than VRML 1.0", "MeshLab turns it into PLY or OBJ")
         }
@@ -50,7 +52,7 @@ mod tests {
         for (header, crease) in [
             ("#Inventor V2.1 ascii", 0.0),
             ("#Inventor V2.1 ascii   \r\nCube{}", 0.0),
-            ("#Inventor V2.0 ascii\n", 0.5),
+            ("#Inventor V2.0 ascii\n", 0.0),
             ("#VRML V1.0 ascii\n", 0.5),
         ] {
             assert_eq!(dialect(header.as_bytes()), Ok(Dialect { crease_angle: crease }), "{header}");

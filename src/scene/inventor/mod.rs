@@ -37,7 +37,7 @@ mod walk;
 use super::mesh_builder::MeshBuilder;
 use super::text::{Fault, Includes, Trouble};
 use super::{Options, Scene, SceneCamera};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use glam::DVec3;
 use state::State;
 use std::collections::HashMap;
@@ -86,6 +86,10 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     reader.mesh.read(bytes.len());
     reader.file(path, &bytes, None)?;
     let mut scene = Scene { camera: reader.camera, ..reader.mesh.finish() };
+    if scene.triangles.is_empty() && !scene.warnings.is_empty() {
+        let problem = format!("there is no triangle: {}", scene.warnings.join(", "));
+        return Err(Error::file(path, None, problem, "a scene needs at least one"));
+    }
     view::shine(&mut scene, &reader.suns);
     Ok(scene)
 }

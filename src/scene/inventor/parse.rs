@@ -165,15 +165,17 @@ impl<'a> Parser<'a, '_> {
         if ignored {
             self.words.next();
         }
+        let values = if ignored { Some(Values::Ignored) } else { values };
         if self.words.peek() == Some(b"=") {
             self.words.next();
             self.connection()?;
         }
-        if let (Some(name), Some(values), false) = (known, values, ignored) {
+        if let (Some(name), Some(values)) = (known, values) {
             node.cost += match &values {
                 Values::Numbers(numbers) => numbers.len(),
                 Values::Words(words) => words.len(),
                 Values::Node(inner) => self.tree.node(*inner).cost,
+                Values::Ignored => 0,
             };
             if let Values::Node(inner) = values {
                 self.adopt(node, inner)?;
@@ -227,7 +229,7 @@ impl<'a> Parser<'a, '_> {
             self.mesh.charge(match values {
                 Values::Numbers(numbers) => size_of_val(&**numbers),
                 Values::Words(words) => words.iter().map(|word| size_of_val(word) + word.len()).sum(),
-                Values::Node(_) => 0,
+                Values::Node(_) | Values::Ignored => 0,
             })?;
         }
         Ok(values)

@@ -215,6 +215,10 @@ impl State<'static> {
 impl<'t> State<'t> {
     /// Takes over what a node that is neither group, transform nor shape sets. A field that is not there has its default.
     pub fn set(&mut self, node: &'t Node, crease_angle: f64) -> Result<(), Fault> {
+        // Nodes of one field, which may be told to leave things as they are
+        if ["point", "vector", "value", "model", "style", "creaseAngle"].iter().any(|field| node.ignores(field)) {
+            return Ok(());
+        }
         match node.kind {
             Kind::Coordinate3 => {
                 self.coordinates = Coordinates { numbers: node.tuples("point", 3)?.unwrap_or(&[]), width: 3 };
@@ -255,17 +259,22 @@ impl<'t> State<'t> {
     }
 
     fn material(&mut self, node: &'t Node) -> Result<(), Fault> {
-        let list = |name, width, default: &'t [f64]| -> Result<&'t [f64], Fault> {
-            Ok(node.tuples(name, width)?.filter(|numbers| !numbers.is_empty()).unwrap_or(default))
+        let (before, default) = (self.materials, State::new(0.0).materials);
+        let list = |name, width, before: &'t [f64], default: &'t [f64]| -> Result<&'t [f64], Fault> {
+            match node.tuples(name, width)? {
+                None if node.ignores(name) => Ok(before),
+                None | Some([]) => Ok(default),
+                Some(numbers) => Ok(numbers),
+            }
         };
-        let default = State::new(0.0).materials;
+        let diffuse = list("diffuseColor", 3, &[], &[0.8; 3])?;
         self.materials = Materials {
-            ambient: list("ambientColor", 3, default.ambient)?,
-            diffuse: Colours::Rgb(list("diffuseColor", 3, &[0.8; 3])?),
-            specular: list("specularColor", 3, default.specular)?,
-            emissive: list("emissiveColor", 3, default.emissive)?,
-            shininess: list("shininess", 1, default.shininess)?,
-            transparency: list("transparency", 1, default.transparency)?,
+            ambient: list("ambientColor", 3, before.ambient, default.ambient)?,
+            diffuse: if diffuse.is_empty() { before.diffuse } else { Colours::Rgb(diffuse) },
+            specular: list("specularColor", 3, before.specular, default.specular)?,
+            emissive: list("emissiveColor", 3, before.emissive, default.emissive)?,
+            shininess: list("shininess", 1, before.shininess, default.shininess)?,
+            transparency: list("transparency", 1, before.transparency, default.transparency)?,
         };
         Ok(())
     }

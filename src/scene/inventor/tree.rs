@@ -10,6 +10,8 @@ pub enum Values {
     Numbers(Box<[f64]>),
     Words(Box<[Box<[u8]>]>),
     Node(u32),
+    /// Nothing: what was set before stays.
+    Ignored,
 }
 
 /// A field with the line in which it begins.
@@ -53,7 +55,14 @@ impl Tree {
 impl Node {
     /// The field of that name; the last one, if it is there several times.
     pub fn field(&self, name: &str) -> Option<&Field> {
-        self.fields.iter().rev().find(|field| field.name == name)
+        let field = self.fields.iter().rev().find(|field| field.name == name)?;
+        Some(field).filter(|field| !matches!(field.values, Values::Ignored))
+    }
+
+    /// True if the file says that the field of that name is to leave things as they are.
+    pub fn ignores(&self, name: &str) -> bool {
+        let field = self.fields.iter().rev().find(|field| field.name == name);
+        field.is_some_and(|field| matches!(field.values, Values::Ignored))
     }
 
     /// A field's numbers, `None` if the file does not have it.
@@ -170,7 +179,7 @@ impl Field {
                 None => Ok(&[]),
                 Some(word) => Err(self.fault(format!("{} is not a number", quote_bytes(word)))),
             },
-            Values::Node(_) => Err(self.fault("there is a node where numbers are needed")),
+            Values::Node(_) | Values::Ignored => Err(self.fault("numbers are needed")),
         }
     }
 

@@ -259,7 +259,7 @@ fn materials_have_the_formats_defaults_and_light() {
         "Material { diffuseColor [ 1 0 0, 0 1 0, 0 0 1 ] shininess [ 0, 1 ] } MaterialBinding { value PER_PART } Cube {}",
     );
     let exponents: Vec<f32> = materials(&lists).iter().step_by(2).map(|m| m.exponent).collect();
-    assert_eq!((colours(&lists).as_str(), exponents), ("rrggbbrrggbb", vec![0.0, 128.0, 0.0, 0.0, 128.0, 0.0]));
+    assert_eq!((colours(&lists).as_str(), exponents), ("rrggbbrrggbb", vec![0.0, 128.0, 0.0, 128.0, 0.0, 128.0]));
     let clear = iv(
         "Material { transparency .5 } Cube {} DrawStyle { style LINES } Cube {} DrawStyle { style INVISIBLE } Cube {}",
     );
@@ -313,10 +313,10 @@ fn normals_are_bound_or_made() {
         let up = found[2][2];
         assert!((up.z > 0.9999) == (angle != "1.3"), "{angle}: {up}");
     }
-    // V2.0 and VRML 1.0 smooth half a radian
+    // VRML 1.0 smooths half a radian
     let bent = "Coordinate3 { point [ 0 0 0, 1 0 0, 1 1 0, 0 1 0, 1 2 .3, 0 2 .3 ] } \
         IndexedFaceSet { coordIndex [ 0 1 2 3 -1 3 2 4 5 -1 ] }";
-    for (header, vertices) in [("#VRML V1.0 ascii", 6), ("#Inventor V2.0 ascii", 6), ("#Inventor V2.1 ascii", 8)] {
+    for (header, vertices) in [("#VRML V1.0 ascii", 6), ("#Inventor V2.0 ascii", 8), ("#Inventor V2.1 ascii", 8)] {
         let scene = Files::new(&[("main.wrl", &format!("{header}\n{bent}"))]).load("main.wrl").unwrap();
         assert_eq!(scene.vertices.len(), vertices, "{header}");
     }
@@ -426,7 +426,7 @@ fn each_fault_is_named_with_its_line() {
         ("DEF a Group { USE a }", "USE `a`: there is no such name"),
         ("\nCoordinate3 {\npoint [ 0 0 0, 1 0 ] }", ":4: point: 5 numbers are no multiple of 3"),
         ("IndexedFaceSet { coordIndex [ 0, 1, 2 ] }", "there are no coordinates"),
-        ("POINTS\nIndexedFaceSet {\ncoordIndex [ 0, 1, 5 ] }", ":5: coordIndex: index 5 is out of range (give 0 to 4)"),
+        ("POINTS\nIndexedFaceSet {\ncoordIndex [ 0, 1, 5 ] }", ":4: coordIndex: index 5 is out of range (give 0 to 4)"),
         ("POINTS IndexedFaceSet { coordIndex [ 0, 1, 2.5 ] }", "index 2.5 is out of range"),
         ("POINTS FaceSet { numVertices [ 3, 3 ] }", "6 coordinates are needed, but there are 5"),
         ("POINTS FaceSet { startIndex -1 }", "startIndex: -1 is negative"),
