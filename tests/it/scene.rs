@@ -2,6 +2,7 @@
 
 mod aff;
 mod broken_aff;
+mod broken_inventor;
 mod broken_ply;
 mod built_in;
 mod cache;
@@ -9,6 +10,7 @@ mod catalogue;
 mod fetch;
 mod gltf;
 mod inventor;
+mod inventor_faces;
 mod mgf;
 mod mutation;
 mod obj;

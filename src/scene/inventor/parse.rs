@@ -193,7 +193,7 @@ impl<'a> Parser<'a, '_> {
         };
         let mut list = List::new(wanted);
         match first[0] {
-            b'~' => return Ok(None),
+            b'~' | b'=' => return Ok(None),
             b'[' => {
                 self.words.next();
                 loop {

@@ -180,6 +180,10 @@ pub struct State<'t> {
     pub chosen: i64,
 }
 
+/// Diffuse colour by default.
+const GREY: [f64; 3] = [0.8; 3];
+const PACKED_GREY: [f64; 1] = [0xcccc_ccff_u32 as f64];
+
 /// Of normals: corners have their own, by the shape's coordinates.
 const NORMALS: (Binding, bool) = (Binding::Vertex, true);
 const MATERIALS: (Binding, bool) = (Binding::Overall, false);
@@ -195,7 +199,7 @@ impl State<'static> {
             normal_binding: NORMALS,
             materials: Materials {
                 ambient: &[0.2; 3],
-                diffuse: Colours::Rgb(&[0.8; 3]),
+                diffuse: Colours::Rgb(&GREY),
                 specular: &[0.0; 3],
                 emissive: &[0.0; 3],
                 shininess: &[0.2],
@@ -212,28 +216,41 @@ impl State<'static> {
     }
 }
 
+/// The list in a field: `before` where it is empty or is to be ignored, `default` where it is not there.
+fn list<'t>(
+    node: &'t Node,
+    name: &str,
+    width: usize,
+    before: &'t [f64],
+    default: &'t [f64],
+) -> Result<&'t [f64], Fault> {
+    match node.tuples(name, width)? {
+        Some([]) => Ok(before),
+        Some(numbers) => Ok(numbers),
+        None if node.ignores(name) => Ok(before),
+        None => Ok(default),
+    }
+}
+
 impl<'t> State<'t> {
-    /// Takes over what a node that is neither group, transform nor shape sets. A field that is not there has its default.
+    /// Takes over what a node that is neither group, transform nor shape sets. A field that is not there has its default; one that is
+    /// empty leaves things as they are.
     pub fn set(&mut self, node: &'t Node, crease_angle: f64) -> Result<(), Fault> {
         // Nodes of one field, which may be told to leave things as they are
         if ["point", "vector", "value", "model", "style", "creaseAngle"].iter().any(|field| node.ignores(field)) {
             return Ok(());
         }
         match node.kind {
-            Kind::Coordinate3 => {
-                self.coordinates = Coordinates { numbers: node.tuples("point", 3)?.unwrap_or(&[]), width: 3 };
-            }
-            Kind::Coordinate4 => {
-                self.coordinates = Coordinates { numbers: node.tuples("point", 4)?.unwrap_or(&[]), width: 4 };
-            }
-            Kind::Normal => self.normals = node.tuples("vector", 3)?.unwrap_or(&[]),
+            Kind::Coordinate3 => self.positions(node.tuples("point", 3)?, 3),
+            Kind::Coordinate4 => self.positions(node.tuples("point", 4)?, 4),
+            Kind::Normal => self.normals = list(node, "vector", 3, self.normals, self.normals)?,
             Kind::NormalBinding => self.normal_binding = Binding::read(node, "value", NORMALS)?,
             Kind::MaterialBinding => self.material_binding = Binding::read(node, "value", MATERIALS)?,
             Kind::Material => self.material(node)?,
-            Kind::BaseColor => self.diffuse(node.tuples("rgb", 3)?.map(Colours::Rgb)),
+            Kind::BaseColor => self.diffuse(Colours::Rgb(list(node, "rgb", 3, &[], &GREY)?)),
             Kind::PackedColor => {
-                self.diffuse(node.numbers("rgba")?.map(Colours::Abgr));
-                self.diffuse(node.numbers("orderedRGBA")?.map(Colours::Rgba));
+                self.diffuse(Colours::Rgba(list(node, "orderedRGBA", 1, &[], &PACKED_GREY)?));
+                self.diffuse(Colours::Abgr(list(node, "rgba", 1, &[], &[])?));
             }
             Kind::VertexProperty => self.vertex_property(node)?,
             Kind::ShapeHints => {
@@ -251,45 +268,43 @@ impl<'t> State<'t> {
         Ok(())
     }
 
+    /// Positions, unless there are none.
+    fn positions(&mut self, numbers: Option<&'t [f64]>, width: usize) {
+        if let Some(numbers) = numbers.filter(|numbers| !numbers.is_empty()) {
+            self.coordinates = Coordinates { numbers, width };
+        }
+    }
+
     /// Colours, unless there are none.
-    fn diffuse(&mut self, colours: Option<Colours<'t>>) {
-        if let Some(colours) = colours.filter(|colours| colours.len() > 0) {
+    fn diffuse(&mut self, colours: Colours<'t>) {
+        if colours.len() > 0 {
             self.materials.diffuse = colours;
         }
     }
 
     fn material(&mut self, node: &'t Node) -> Result<(), Fault> {
         let (before, default) = (self.materials, State::new(0.0).materials);
-        let list = |name, width, before: &'t [f64], default: &'t [f64]| -> Result<&'t [f64], Fault> {
-            match node.tuples(name, width)? {
-                None if node.ignores(name) => Ok(before),
-                None | Some([]) => Ok(default),
-                Some(numbers) => Ok(numbers),
-            }
-        };
-        let diffuse = list("diffuseColor", 3, &[], &[0.8; 3])?;
+        self.diffuse(Colours::Rgb(list(node, "diffuseColor", 3, &[], &GREY)?));
         self.materials = Materials {
-            ambient: list("ambientColor", 3, before.ambient, default.ambient)?,
-            diffuse: if diffuse.is_empty() { before.diffuse } else { Colours::Rgb(diffuse) },
-            specular: list("specularColor", 3, before.specular, default.specular)?,
-            emissive: list("emissiveColor", 3, before.emissive, default.emissive)?,
-            shininess: list("shininess", 1, before.shininess, default.shininess)?,
-            transparency: list("transparency", 1, before.transparency, default.transparency)?,
+            ambient: list(node, "ambientColor", 3, before.ambient, default.ambient)?,
+            specular: list(node, "specularColor", 3, before.specular, default.specular)?,
+            emissive: list(node, "emissiveColor", 3, before.emissive, default.emissive)?,
+            shininess: list(node, "shininess", 1, before.shininess, default.shininess)?,
+            transparency: list(node, "transparency", 1, before.transparency, default.transparency)?,
+            ..self.materials
         };
         Ok(())
     }
 
     /// What is empty there leaves the state as it is, and its binding with it.
     fn vertex_property(&mut self, node: &'t Node) -> Result<(), Fault> {
-        if let Some(numbers) = node.tuples("vertex", 3)?.filter(|numbers| !numbers.is_empty()) {
-            self.coordinates = Coordinates { numbers, width: 3 };
-        }
+        self.positions(node.tuples("vertex", 3)?, 3);
         if let Some(numbers) = node.tuples("normal", 3)?.filter(|numbers| !numbers.is_empty()) {
             self.normals = numbers;
             self.normal_binding = Binding::read(node, "normalBinding", NORMALS)?;
         }
         if let Some(colours) = node.numbers("orderedRGBA")?.filter(|numbers| !numbers.is_empty()) {
-            self.diffuse(Some(Colours::Rgba(colours)));
+            self.diffuse(Colours::Rgba(colours));
             self.material_binding = Binding::read(node, "materialBinding", MATERIALS)?;
         }
         Ok(())

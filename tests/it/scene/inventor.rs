@@ -1,32 +1,32 @@
-//! Open Inventor and VRML 1.0: what each node makes, what is refused, and the real fixtures with counts worked out by hand.
+//! Open Inventor and VRML 1.0: what each node makes, and the real fixtures with counts worked out by hand.
 
 use super::{Files, real_scenes, refusal};
 use glam::Vec3;
 use rtbench::scene::{self, Material, Scene};
 
-const HEADER: &str = "#Inventor V2.1 ascii\n";
+pub(super) const HEADER: &str = "#Inventor V2.1 ascii\n";
 
-fn iv(text: &str) -> Scene {
+pub(super) fn iv(text: &str) -> Scene {
     let files = Files::new(&[("main.iv", &format!("{HEADER}{text}"))]);
     files.load("main.iv").unwrap_or_else(|error| panic!("{text}: {error}"))
 }
 
 /// Positions of the corners of a triangle.
-fn corners(scene: &Scene, triangle: usize) -> [Vec3; 3] {
+pub(super) fn corners(scene: &Scene, triangle: usize) -> [Vec3; 3] {
     scene.triangles[triangle].vertices.map(|v| scene.vertices[v as usize].position)
 }
 
-fn near(found: Vec3, expected: [f32; 3], what: &str) {
-    assert!((found - Vec3::from(expected)).abs().max_element() < 1e-5, "{what}: {found}, not {expected:?}");
+pub(super) fn near(found: Vec3, expected: [f32; 3], what: &str) {
+    assert!((found - Vec3::from(expected)).abs().max_element() < 1e-4, "{what}: {found}, not {expected:?}");
 }
 
 /// The material of every triangle.
-fn materials(scene: &Scene) -> Vec<Material> {
+pub(super) fn materials(scene: &Scene) -> Vec<Material> {
     scene.triangles.iter().map(|triangle| scene.materials[triangle.material as usize]).collect()
 }
 
 /// Diffuse colours of all triangles, a letter for each: white if all are 1, black if all are 0, `?` for what is none.
-fn colours(scene: &Scene) -> String {
+pub(super) fn colours(scene: &Scene) -> String {
     let letter = |m: &Material| match m.diffuse.to_array() {
         [1.0, 0.0, 0.0] => 'r',
         [0.0, 1.0, 0.0] => 'g',
@@ -38,7 +38,7 @@ fn colours(scene: &Scene) -> String {
 }
 
 /// Every triangle's normals are on the side from which it turns counter-clockwise.
-fn faces_out(scene: &Scene, what: &str) {
+pub(super) fn faces_out(scene: &Scene, what: &str) {
     for t in &scene.triangles {
         let [a, b, c] = t.vertices.map(|v| scene.vertices[v as usize]);
         let turn = (b.position - a.position).cross(c.position - a.position);
@@ -49,8 +49,8 @@ fn faces_out(scene: &Scene, what: &str) {
 }
 
 /// A square in the plane z = 0 and a point above its middle, and faces of them.
-const POINTS: &str = "Coordinate3 { point [ 0 0 0, 1 0 0, 1 1 0, 0 1 0, .5 .5 1 ] }\n";
-const PYRAMID: &str =
+pub(super) const POINTS: &str = "Coordinate3 { point [ 0 0 0, 1 0 0, 1 1 0, 0 1 0, .5 .5 1 ] }\n";
+pub(super) const PYRAMID: &str =
     "IndexedFaceSet { coordIndex [ 3, 2, 1, 0, -1, 0, 1, 4, -1, 1, 2, 4, -1, 2, 3, 4, -1, 3, 0, 4, -1 ] }";
 
 #[test]
@@ -91,6 +91,11 @@ fn transforms_apply_from_the_innermost_outwards_and_matrices_are_rows() {
             "Transform { translation 10 0 0 rotation 0 0 1 1.57079633 scaleFactor 2 1 1 \
              scaleOrientation 0 0 1 1.57079633 center 1 0 0 }",
             [[11., -1., 0.], [11., 0., 0.], [9., -1., 0.]],
+        ),
+        // As the format's own library has it
+        (
+            "Transform { translation 10 0 0 rotation 0 0 1 1.57079633 scaleFactor 2 1 1 scaleOrientation 0 0 1 .5 center 1 0 0 }",
+            [[11.4207, -1.77015, 0.], [11., 0., 0.], [10.1909, -1.34942, 0.]],
         ),
         ("MatrixTransform { matrix 0 1 0 0 -1 0 0 0 0 0 1 0 5 6 7 1 }", [[5., 6., 7.], [5., 7., 7.], [4., 6., 7.]]),
         ("Units { units CENTIMETERS }", [[0., 0., 0.], [0.01, 0., 0.], [0., 0.01, 0.]]),
@@ -135,6 +140,7 @@ fn switches_levels_and_copies_choose_what_is_shown() {
         ("LOD { range [ 5, 9 ] SOLIDS }".to_owned(), 12),
         ("LevelOfDetail { SOLIDS }".to_owned(), 12),
         ("LevelOfDetail {} Cube {}".to_owned(), 12),
+        ("Blinker { whichChild 1 SOLIDS }".to_owned(), 528),
         ("DEF a Cube {} USE a DEF a Cone {} USE a".to_owned(), 12 * 2 + 48 * 2),
         ("DEF two Group { DEF one Cube {} USE one } USE two".to_owned(), 48),
     ] {
@@ -150,176 +156,6 @@ fn switches_levels_and_copies_choose_what_is_shown() {
     let copies =
         iv("MultipleCopy { matrix [ 1 0 0 0 0 1 0 0 0 0 1 0 9 0 0 1, 2 0 0 0 0 2 0 0 0 0 2 0 0 0 0 1 ] Cube {} }");
     assert_eq!((copies.triangles.len(), copies.bounds().max), (24, Vec3::new(10.0, 2.0, 2.0)));
-}
-
-#[test]
-fn sets_of_faces_share_one_meaning() {
-    let square = "vertexProperty VertexProperty { vertex [ 9 9 9, 0 0 0, 1 0 0, 0 1 0, 1 1 0, 0 2 0, 1 2 0 ] }";
-    for (text, triangles) in [
-        (format!("{POINTS}{PYRAMID}"), 2 + 4),
-        (format!("{POINTS}IndexedFaceSet {{ coordIndex [ 0 1 2 3 ] }}"), 2),
-        (format!("{POINTS}IndexedFaceSet {{ coordIndex [ 0 1 2 -1 -1 0 1 -1 0 2 3 -1 ] }}"), 2),
-        (format!("{POINTS}IndexedTriangleStripSet {{ coordIndex [ 0 1 3 2 -1 0 1 4 ] }}"), 3),
-        (format!("FaceSet {{ startIndex 1 numVertices [ 3, -1 ] {square} }}"), 1 + 1),
-        (format!("FaceSet {{ {square} }}"), 5),
-        (format!("TriangleStripSet {{ startIndex 1 {square} }}"), 4),
-        (format!("TriangleStripSet {{ startIndex 1 numVertices [ 4, 2 ] {square} }}"), 2),
-        (format!("QuadMesh {{ startIndex 1 verticesPerColumn 3 verticesPerRow 2 {square} }}"), 4),
-        ("Coordinate4 { point [ 0 0 0 2, 2 0 0 2, 2 2 0 2 ] } FaceSet {}".to_owned(), 1),
-    ] {
-        let scene = iv(&text);
-        assert_eq!(scene.triangles.len(), triangles, "{text}");
-        if !text.contains("{ vertexP") {
-            // All but the face of every point there is, which runs into itself
-            faces_out(&scene, &text);
-        }
-    }
-    // A strip's triangles all turn the same way; turned around, they turn the other way
-    for (hints, z) in [("", 1.0), ("ShapeHints { vertexOrdering CLOCKWISE }", -1.0)] {
-        let scene = iv(&format!("{hints} TriangleStripSet {{ startIndex 1 {square} }}"));
-        assert!(scene.vertices.iter().all(|v| v.normal == Vec3::Z * z), "{hints}: {:?}", scene.vertices);
-        faces_out(&scene, hints);
-    }
-    let mesh = iv(&format!("QuadMesh {{ startIndex 1 verticesPerColumn 3 verticesPerRow 2 {square} }}"));
-    assert_eq!(mesh.vertices.len(), 6, "flat: corners are shared");
-    near(corners(&iv("Coordinate4 { point [ 0 0 0 2, 2 0 0 2, 2 2 0 2 ] } FaceSet {}"), 0)[2], [1., 1., 0.], "divided");
-}
-
-#[test]
-fn materials_are_bound_as_the_file_says() {
-    let rgb = "BaseColor { rgb [ 1 0 0, 0 1 0, 0 0 1, 1 1 1 ] } ";
-    let bound = |binding: &str, shape: &str| {
-        colours(&iv(&format!("{rgb}{POINTS}MaterialBinding {{ value {binding} }} {shape}")))
-    };
-    let faces = |indices: &str| PYRAMID.replace(" ] }", &format!(" ] materialIndex [ {indices} ] }}"));
-    assert_eq!(bound("OVERALL", PYRAMID), "rrrrrr");
-    assert_eq!(bound("DEFAULT", PYRAMID), "rrrrrr");
-    // Five faces of four materials: the fifth has the first again
-    assert_eq!(bound("PER_FACE", PYRAMID), "rrgbwr");
-    assert_eq!(bound("PER_PART", PYRAMID), "rrgbwr");
-    assert_eq!(bound("PER_FACE_INDEXED", &faces("3 3 2 1 0")), "wwwbgr");
-    assert_eq!(bound("PER_FACE", &faces("3 3 2 1 0")), "rrgbwr", "indices that do not count");
-    let vertices = "0 0 0 0 -1 1 1 1 -1 2 2 2 -1 3 3 3 -1 0 1 2 -1";
-    assert_eq!(bound("PER_VERTEX_INDEXED", &faces(vertices)), "rrgbw?");
-    let strip = "IndexedTriangleStripSet { coordIndex [ 0 1 3 2 4 -1 0 1 4 ] }";
-    assert_eq!(bound("PER_PART", strip), "rrrg");
-    assert_eq!(bound("PER_FACE", strip), "rgbw");
-    assert_eq!(bound("PER_PART", "Cube {}"), "rrggbbwwrrgg");
-    assert_eq!(bound("PER_FACE", "Cube {}"), "rrggbbwwrrgg");
-    assert_eq!(bound("PER_PART", "Cone {}"), format!("{}{}", "r".repeat(24), "g".repeat(24)));
-    assert_eq!(bound("PER_PART", "Cylinder {}"), format!("{}{}{}", "r".repeat(48), "g".repeat(24), "b".repeat(24)));
-    assert_eq!(bound("PER_PART", "Sphere {}"), "r".repeat(528));
-    let mesh = "QuadMesh { verticesPerColumn 3 verticesPerRow 2 vertexProperty VertexProperty { \
-        vertex [ 0 0 0, 1 0 0, 0 1 0, 1 1 0, 0 2 0, 1 2 0 ] } }";
-    assert_eq!(bound("PER_PART", mesh), "rrgg");
-    // Corners of different colours: their mean, and the user is told
-    let scene = iv(&format!(
-        "{rgb}MaterialBinding {{ value PER_VERTEX }} FaceSet {{ vertexProperty VertexProperty {{ vertex [ 0 0 0, 1 0 0, 0 1 0 ] }} }}"
-    ));
-    near(scene.materials[0].diffuse, [1. / 3.; 3], "mean");
-    assert_eq!(scene.warnings, ["colours bound to corners: a face has their mean"]);
-    // Those of a vertex property go before, if there are any
-    let own = |colours: &str| {
-        format!(
-            "{rgb}MaterialBinding {{ value PER_FACE }} FaceSet {{ numVertices [ 3 3 ] vertexProperty VertexProperty {{ \
-             vertex [ 0 0 0, 1 0 0, 0 1 0, 0 0 0, 1 0 0, 0 1 0 ] orderedRGBA [ {colours} ] materialBinding OVERALL }} }}"
-        )
-    };
-    assert_eq!(colours(&iv(&own("0x0000ffff"))), "bb");
-    assert_eq!(colours(&iv(&own(""))), "rg");
-    assert_eq!(colours(&iv("PackedColor { orderedRGBA 0x00ff00ff } Cube {}")), "g".repeat(12));
-    assert_eq!(
-        colours(&iv("PackedColor { rgba 0xff0000ff } Cube {}")),
-        "r".repeat(12),
-        "V2.0 has them the other way round"
-    );
-}
-
-#[test]
-fn materials_have_the_formats_defaults_and_light() {
-    let only = |text: &str| iv(&format!("{text} Cube {{}}")).materials[0];
-    let plain = only("");
-    near(plain.ambient, [0.04; 3], "a fifth of a fifth");
-    near(plain.diffuse, [0.8; 3], "default");
-    assert_eq!((plain.specular, plain.reflectivity), (Vec3::ZERO, 0.0));
-    assert!((plain.exponent - 25.6).abs() < 1e-4);
-    let full = only(
-        "Environment { ambientIntensity .5 ambientColor 1 0 0 } Material { ambientColor .4 .4 .4 diffuseColor .1 .2 .3 \
-         specularColor .5 .6 .7 emissiveColor 0 .25 0 shininess 1 }",
-    );
-    near(full.ambient, [0.2, 0.25, 0.], "ambient light and its own");
-    near(full.diffuse, [0.1, 0.2, 0.3], "diffuse");
-    near(full.specular, [0.5, 0.6, 0.7], "specular");
-    assert_eq!((full.exponent, full.reflectivity), (128.0, 0.0));
-    let unlit = only("LightModel { model BASE_COLOR } BaseColor { rgb 1 .5 0 }");
-    assert_eq!((unlit.ambient, unlit.diffuse, unlit.specular), (Vec3::new(1.0, 0.5, 0.0), Vec3::ZERO, Vec3::ZERO));
-    // A material sets what it does not mention as well, unless it is told to ignore it; lists start again
-    near(only("BaseColor { rgb 1 0 0 } Material { shininess 1 }").diffuse, [0.8; 3], "set again");
-    let lists = iv(
-        "Material { diffuseColor [ 1 0 0, 0 1 0, 0 0 1 ] shininess [ 0, 1 ] } MaterialBinding { value PER_PART } Cube {}",
-    );
-    let exponents: Vec<f32> = materials(&lists).iter().step_by(2).map(|m| m.exponent).collect();
-    assert_eq!((colours(&lists).as_str(), exponents), ("rrggbbrrggbb", vec![0.0, 128.0, 0.0, 128.0, 0.0, 128.0]));
-    let clear = iv(
-        "Material { transparency .5 } Cube {} DrawStyle { style LINES } Cube {} DrawStyle { style INVISIBLE } Cube {}",
-    );
-    assert_eq!(clear.triangles.len(), 12);
-    assert_eq!(
-        clear.warnings,
-        [
-            "transparent material: shown opaque (6 times)",
-            "shape drawn as lines, as points or not at all left out (2 times)"
-        ]
-    );
-}
-
-#[test]
-fn normals_are_bound_or_made() {
-    let normals = "Normal { vector [ 0 0 -1, 0 -1 1, 1 0 1, 0 1 1, -1 0 1 ] } ";
-    let of = |text: &str| {
-        let scene = iv(text);
-        let normals: Vec<[Vec3; 3]> =
-            scene.triangles.iter().map(|t| t.vertices.map(|v| scene.vertices[v as usize].normal)).collect();
-        (normals, scene)
-    };
-    for (binding, indices) in [
-        ("PER_FACE", ""),
-        ("PER_PART", ""),
-        ("PER_FACE_INDEXED", "normalIndex [ 0 1 2 3 4 ]"),
-        ("PER_VERTEX_INDEXED", "normalIndex [ 0 0 0 0 -1 1 1 1 -1 2 2 2 -1 3 3 3 -1 4 4 4 -1 ]"),
-    ] {
-        let pyramid = PYRAMID.replace(" ] }", &format!(" ] {indices} }}"));
-        let (found, scene) = of(&format!("{normals}NormalBinding {{ value {binding} }} {POINTS}{pyramid}"));
-        assert_eq!(scene.vertices.len(), 4 + 4 * 3, "{binding}");
-        assert_eq!(found[0], [Vec3::NEG_Z; 3], "{binding}");
-        near(found[2][0], [0., -0.5f32.sqrt(), 0.5f32.sqrt()], binding);
-        near(found[5][2], [-0.5f32.sqrt(), 0., 0.5f32.sqrt()], binding);
-        assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
-    }
-    // By default corners have the normals of their coordinates, and share vertices
-    let (found, scene) = of(&format!("{normals}{POINTS}{PYRAMID}"));
-    assert_eq!((scene.vertices.len(), found[2][0], found[0][2]), (5, Vec3::NEG_Z, found[2][1]));
-    let (found, _) = of(&format!("{normals}NormalBinding {{ value OVERALL }} {POINTS}{PYRAMID}"));
-    assert!(found.iter().flatten().all(|&normal| normal == Vec3::NEG_Z));
-    // One by one: 4 + 3 * 4 corners, and so 16 normals, are needed
-    let (_, scene) = of(&format!("{normals}NormalBinding {{ value PER_VERTEX }} {POINTS}{PYRAMID}"));
-    assert_eq!(scene.warnings, ["fewer normals than are bound: others made"]);
-    faces_out(&scene, "made");
-    assert_eq!(scene.vertices.len(), 4 + 4 * 3, "V2.1 makes none smooth");
-    // The sides meet the base at 116.6 degrees (2.03) and each other at 78.5 (1.37)
-    for (angle, vertices) in [("1.3", 16), ("1.4", 4 + 8 + 1), ("2.1", 5)] {
-        let (found, scene) = of(&format!("ShapeHints {{ creaseAngle {angle} }} {POINTS}{PYRAMID}"));
-        assert_eq!(scene.vertices.len(), vertices, "{angle}");
-        let up = found[2][2];
-        assert!((up.z > 0.9999) == (angle != "1.3"), "{angle}: {up}");
-    }
-    // VRML 1.0 smooths half a radian
-    let bent = "Coordinate3 { point [ 0 0 0, 1 0 0, 1 1 0, 0 1 0, 1 2 .3, 0 2 .3 ] } \
-        IndexedFaceSet { coordIndex [ 0 1 2 3 -1 3 2 4 5 -1 ] }";
-    for (header, vertices) in [("#VRML V1.0 ascii", 6), ("#Inventor V2.0 ascii", 8), ("#Inventor V2.1 ascii", 8)] {
-        let scene = Files::new(&[("main.wrl", &format!("{header}\n{bent}"))]).load("main.wrl").unwrap();
-        assert_eq!(scene.vertices.len(), vertices, "{header}");
-    }
 }
 
 #[test]
@@ -400,110 +236,6 @@ fn includes_take_over_the_state_and_keep_theirs() {
     }
     let scene = iv("File { name \"http://example.org/x.iv\" } File {} Cube {}");
     assert_eq!(scene.warnings, ["includes from the network left out", "include without a file's name left out"]);
-}
-
-#[test]
-fn each_fault_is_named_with_its_line() {
-    // Every one doubles the last: 2^40 cubes
-    let doubling: String = (1..40).map(|i| format!("DEF n{i} Group {{ USE n{} USE n{} }}\n", i - 1, i - 1)).collect();
-    let chain: String = (1..400).map(|i| format!("DEF n{i} Group {{ USE n{} }}\n", i - 1)).collect();
-    for (text, words) in [
-        ("", "there is no triangle"),
-        ("Separator {", "main.iv:2: the Separator that begins here has no `}`"),
-        ("Separator {\nCube {\n", ":3: the Cube that begins here has no `}`"),
-        ("Cube {} }", ":2: `}` where a node should begin"),
-        ("Cube", "the file ends within a node"),
-        ("Cube [", "`Cube` has no `{`"),
-        ("Cube {\n5 }", ":3: `5` where a field or a node should begin"),
-        ("Cube {\nSphere {} }", ":3: a Cube holds no other nodes"),
-        ("Cube { width }", "width: `}` where a value should be"),
-        ("Cube {\n\nwidth wide }", ":4: width: `wide` is not a number"),
-        ("Cube { width 1 2 }", "width: needs 1 numbers"),
-        ("Cube { width 1e999 }", "width: `1e999` is not a finite number"),
-        ("Cube { width 1e99 }", "is not finite in single precision"),
-        ("Cube { width 1..2 }", "`1..2` is not a finite number"),
-        ("USE nothing", ":2: USE `nothing`: there is no such name"),
-        ("DEF a Group { USE a }", "USE `a`: there is no such name"),
-        ("\nCoordinate3 {\npoint [ 0 0 0, 1 0 ] }", ":4: point: 5 numbers are no multiple of 3"),
-        ("IndexedFaceSet { coordIndex [ 0, 1, 2 ] }", "there are no coordinates"),
-        ("POINTS\nIndexedFaceSet {\ncoordIndex [ 0, 1, 5 ] }", ":4: coordIndex: index 5 is out of range (give 0 to 4)"),
-        ("POINTS IndexedFaceSet { coordIndex [ 0, 1, 2.5 ] }", "index 2.5 is out of range"),
-        ("POINTS FaceSet { numVertices [ 3, 3 ] }", "6 coordinates are needed, but there are 5"),
-        ("POINTS FaceSet { startIndex -1 }", "startIndex: -1 is negative"),
-        ("POINTS QuadMesh { verticesPerColumn 1000000000 verticesPerRow 1000000000 }", "coordinates are needed"),
-        (
-            "POINTS MaterialBinding { value PER_FACE_INDEXED } IndexedFaceSet { coordIndex [ 0 1 2 ] materialIndex 1 }",
-            "materialIndex: index 1 is out of range, there are 1 materials",
-        ),
-        (
-            "POINTS MaterialBinding { value PER_FACE_INDEXED } IndexedFaceSet { coordIndex [ 0 1 2 -1 0 2 3 ] materialIndex 0 }",
-            "materialIndex: 1 indices are too few",
-        ),
-        (
-            "POINTS Normal { vector 0 0 1 } IndexedFaceSet { coordIndex [ 0 1 2 ] normalIndex [ 0 -1 0 ] }",
-            "normalIndex: -1, number 1 of the list, is no index",
-        ),
-        ("MaterialBinding { value PER_MOON }", "value: `PER_MOON` is none of its values"),
-        ("RotationXYZ { axis W }", "axis: `W` is none"),
-        ("Units { units CUBITS }", "`CUBITS` is none"),
-        ("MatrixTransform { matrix 1 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1 }", "matrix: the fourth column"),
-        ("Switch { whichChild .5 }", "whichChild: 0.5 is not a whole number"),
-        ("PointLight { on PERHAPS }", "on: give TRUE or FALSE"),
-        ("FaceSet { vertexProperty Cube {} }", "vertexProperty: the node is none"),
-        ("FaceSet { vertexProperty 3 }", "vertexProperty: a node is needed"),
-        ("Scale { scaleFactor 1e30 1e30 1e30 } Cube {}", "main.iv"),
-        ("DOUBLING USE n39", "more than 64 MiB"),
-        ("DEF n0 Group {} DOUBLINGUSE n39", "copies of copies never end"),
-        ("DEF n0 Group {} CHAIN", "nodes inside each other"),
-        ("Array { numElements1 1000000000 numElements2 1000000000 }", "copies of copies never end"),
-        ("NESTED", "nodes inside each other"),
-    ] {
-        let whole = text
-            .replace("DOUBLING USE", &format!("DEF n0 Cube {{}}\n{doubling} USE"))
-            .replace("DOUBLING", &doubling)
-            .replace("CHAIN", &chain)
-            .replace("POINTS", POINTS.trim_end())
-            .replace("NESTED", &"Separator {".repeat(100_000));
-        let files = Files::new(&[("main.iv", &format!("{HEADER}{whole}"))]);
-        let message = refusal(files.load("main.iv"));
-        assert!(message.contains(words), "{text:?}: {message}");
-    }
-}
-
-#[test]
-fn other_languages_are_refused_with_what_to_do() {
-    for (bytes, words) in [
-        (&b"#Inventor V2.1 binary  \n\0\0\0"[..], "ivcat -o out.iv in.iv"),
-        (b"#VRML V2.0 utf8\nShape {}", "MeshLab"),
-        (b"\x1f\x8b\x08\0\0", "gunzip it first"),
-        (b"Separator { Cube {} }", "the first line is `#Inventor V2.1 ascii`"),
-        (b"", "no header"),
-        (b"\xff\xfe#\0I\0", "no header"),
-    ] {
-        let files = Files::new(&[]);
-        files.write("main.wrl", bytes);
-        let message = refusal(files.load("main.wrl"));
-        assert!(message.contains("main.wrl:1: ") && message.contains(words), "{message}");
-    }
-}
-
-#[test]
-fn line_ends_encodings_and_missing_last_lines_do_not_matter() {
-    let text = format!("{HEADER}Info {{ string \"caf\u{e9}\" }}\nSeparator {{\n\tCube {{ }} # \u{fc}ber\n}}\n");
-    let latin: Vec<u8> = text.chars().map(|c| c as u8).collect();
-    for bytes in [
-        text.clone().into_bytes(),
-        text.replace('\n', "\r\n").into_bytes(),
-        text.replace('\n', "\r").into_bytes(),
-        text.trim_end().as_bytes().to_vec(),
-        latin,
-    ] {
-        let files = Files::new(&[]);
-        files.write("main.iv", &bytes);
-        assert_eq!(files.load("main.iv").unwrap().triangles.len(), 12, "{}", String::from_utf8_lossy(&bytes));
-    }
-    let files = Files::new(&[("main.iv", &format!("{HEADER}\n\nCube {{\n").replace('\n', "\r\n"))]);
-    assert!(refusal(files.load("main.iv")).contains("main.iv:4: "));
 }
 
 /// Of these, `chair` and `table` are binary and `text` has nothing but a cube behind its text.
