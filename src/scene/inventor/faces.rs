@@ -64,6 +64,9 @@ pub struct Faces<'t> {
 /// What sees the faces.
 type Visit<'v> = &'v mut dyn FnMut(Face) -> Result<(), Fault>;
 
+/// What sees runs of corners with their numbers, and may turn them around.
+type VisitRun<'v> = &'v mut dyn FnMut(usize, &mut [Corner]) -> Result<(), Fault>;
+
 impl<'t> Faces<'t> {
     /// The faces of a node that is a set of them.
     pub fn of(node: &'t Node, coordinates: Coordinates<'t>, clockwise: bool) -> Result<Faces<'t>, Fault> {
@@ -150,7 +153,7 @@ impl<'t> Faces<'t> {
     }
 
     /// Visits all runs of corners.
-    fn runs(&self, visit: &mut dyn FnMut(usize, &mut [Corner]) -> Result<(), Fault>) -> Result<(), Fault> {
+    fn runs(&self, visit: VisitRun) -> Result<(), Fault> {
         let mut corners = Vec::new();
         let (mut run, mut number) = (0, 0);
         match self.runs {

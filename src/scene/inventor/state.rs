@@ -144,9 +144,9 @@ impl Coordinates<'_> {
 
     /// A position.
     pub fn get(&self, index: usize) -> Option<DVec3> {
-        match self.numbers.get(index * self.width..(index + 1) * self.width)? {
-            &[x, y, z] => Some(DVec3::new(x, y, z)),
-            &[x, y, z, w] => Some(DVec3::new(x, y, z) / w),
+        match *self.numbers.get(index * self.width..(index + 1) * self.width)? {
+            [x, y, z] => Some(DVec3::new(x, y, z)),
+            [x, y, z, w] => Some(DVec3::new(x, y, z) / w),
             _ => None,
         }
     }

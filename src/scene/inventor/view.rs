@@ -7,6 +7,7 @@ use super::tree::Node;
 use crate::scene::text::Fault;
 use crate::scene::{Light, Pose, Scene, SceneCamera};
 use glam::DVec3;
+use std::f64::consts::FRAC_PI_4;
 
 /// How many diagonals of the scene a directional light is away.
 const FAR: f32 = 10.0;
@@ -40,7 +41,7 @@ impl Reader {
         let position = state.transform.transform_point3(node.vector("position", DVec3::Z)?).as_vec3();
         let along = |v: DVec3| state.transform.transform_vector3(turn * v).normalize_or_zero().as_vec3();
         let (direction, up) = (along(DVec3::NEG_Z), along(DVec3::Y));
-        let field_of_view = node.number("heightAngle", 0.785398)?.to_degrees() as f32;
+        let field_of_view = node.number("heightAngle", FRAC_PI_4)?.to_degrees() as f32;
         if position.is_finite() && direction.cross(up).length() > 1e-3 && field_of_view > 0.0 && field_of_view < 180.0 {
             let pose = Pose { time: 0.0, position, direction, up };
             self.camera = Some(SceneCamera { field_of_view, frames: vec![pose] });

@@ -115,6 +115,10 @@ fn materials_have_the_formats_defaults_and_light() {
     near(only("BaseColor { rgb 1 0 0 } Material { shininess 1 }").diffuse, [0.8; 3], "set again");
     near(only("BaseColor { rgb 1 0 0 } Material { diffuseColor 0 1 0 ~ }").diffuse, [1., 0., 0.], "ignored");
     near(only("BaseColor { rgb 1 0 0 } Material { diffuseColor ~ }").diffuse, [1., 0., 0.], "ignored");
+    near(only("BaseColor { rgb 1 0 0 } Material { diffuseColor [] }").diffuse, [1., 0., 0.], "empty");
+    near(only("BaseColor { rgb 1 0 0 } BaseColor { rgb [] }").diffuse, [1., 0., 0.], "empty");
+    near(only("BaseColor { rgb 1 0 0 } BaseColor {}").diffuse, [0.8; 3], "default");
+    near(only("BaseColor { rgb 1 0 0 } PackedColor {}").diffuse, [0.8; 3], "default");
     let lists = iv(
         "Material { diffuseColor [ 1 0 0, 0 1 0, 0 0 1 ] shininess [ 0, 1 ] } MaterialBinding { value PER_PART } Cube {}",
     );
