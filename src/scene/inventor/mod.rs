@@ -2,8 +2,9 @@
 //! the same language with fewer nodes.
 //!
 //! A file is a tree of nodes. Most of them set something (a transform, coordinates, materials) for the shapes that follow;
-//! a separator ends what was set inside of it, a group does not. A file is read into a tree first ([`parse`]), so that `USE`
-//! costs nothing until it makes triangles, and then walked through ([`walk`]).
+//! a separator ends what was set inside of it, a group does not. A file is read into a tree first (`parse`), so that `USE`
+//! costs nothing until it makes triangles, and then walked through (`walk`). Where specification and tutorials are silent,
+//! it does what the format's own library (SGI's, 2.1.5) was seen to do.
 //!
 //! **Shading.** Materials have the colours of the file: ambient is `ambientColor` times the ambient light of `Environment`,
 //! and `emissiveColor`; the Phong exponent is 128 times the shininess. The format knows no mirrors, and there are none.
@@ -13,7 +14,9 @@
 //! different lengths, each starts again where it ends.
 //!
 //! **Normals** are the file's if there are enough of them. Otherwise they are made: where faces meet at less than the crease
-//! angle, a corner has the mean of their normals ([`crease`]).
+//! angle, a corner has the mean of their normals (`crease`). That angle is 0 by default, and 0.5 in VRML 1.0.
+//!
+//! **Faces** that are concave are cut as such, whatever `ShapeHints` says of them.
 //!
 //! **Lights.** A light shines everywhere here, not just behind its node. Spots are point lights. A directional light stands
 //! far away, at ten times the scene's diagonal. Colours are colour times intensity.
