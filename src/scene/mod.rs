@@ -7,6 +7,7 @@ pub mod aff;
 pub mod cache;
 pub mod catalogue;
 pub mod gltf;
+pub mod inventor;
 pub mod lamps;
 mod load;
 pub mod mesh_builder;
@@ -43,6 +44,8 @@ pub const FORMATS: &[(&str, Reader)] = &[
     ("aff", aff::read),
     ("nff", aff::read),
     ("mgf", mgf::read),
+    ("iv", inventor::read),
+    ("wrl", inventor::read),
     ("obj", obj::read),
     ("gltf", gltf::read),
     ("glb", gltf::read),

@@ -2,12 +2,15 @@
 
 mod aff;
 mod broken_aff;
+mod broken_inventor;
 mod broken_ply;
 mod built_in;
 mod cache;
 mod catalogue;
 mod fetch;
 mod gltf;
+mod inventor;
+mod inventor_faces;
 mod mgf;
 mod mutation;
 mod obj;

@@ -42,6 +42,11 @@ impl Limits {
         if self.used + places * PER_PLACE > self.allowed { Err(self.exceeded()) } else { Ok(()) }
     }
 
+    /// Holds something of this size, which will be gone soon, against what is left.
+    pub fn passing(&self, bytes: usize) -> Result<(), Fault> {
+        if self.used.saturating_add(bytes) > self.allowed { Err(self.exceeded()) } else { Ok(()) }
+    }
+
     #[cold]
     fn exceeded(&self) -> Fault {
         let problem = format!(

@@ -92,6 +92,22 @@ impl MeshBuilder {
         self.limits.read(bytes);
     }
 
+    /// Holds memory that a reader keeps of the file beside the mesh against the same limits.
+    ///
+    /// # Errors
+    /// It is more than the file may take.
+    pub fn charge(&mut self, bytes: usize) -> Result<(), Fault> {
+        self.limits.grow(bytes)
+    }
+
+    /// The same for memory that a reader is about to take and will soon give back.
+    ///
+    /// # Errors
+    /// It is more than the file may take.
+    pub fn charge_for_now(&self, bytes: usize) -> Result<(), Fault> {
+        self.limits.passing(bytes)
+    }
+
     /// The transform from here to the scene.
     pub fn transform(&self) -> DAffine3 {
         self.frame().affine
@@ -240,22 +256,25 @@ impl MeshBuilder {
         self.limits.elements(self.triangles.len())?;
         self.limits.grow(size_of::<Triangle>())?;
         let vertices = if self.frame().mirrored { [a, c, b] } else { [a, b, c] };
-        let material = self.material_index();
+        let material = self.material_index()?;
         self.triangles.push(Triangle { vertices, material });
         Ok(())
     }
 
-    fn material_index(&mut self) -> u32 {
+    fn material_index(&mut self) -> Result<u32, Fault> {
         if let Some(index) = self.current_index {
-            return index;
+            return Ok(index);
         }
         let words: [u32; 12] = bytemuck::cast(self.current);
-        let index = *self.known.entry(words).or_insert_with(|| {
+        let next = self.materials.len() as u32;
+        let index = *self.known.entry(words).or_insert(next);
+        if index == next {
+            // Once in the list and once, with its index, in the map
+            self.limits.grow(2 * size_of::<Material>())?;
             self.materials.push(self.current);
-            self.materials.len() as u32 - 1
-        });
+        }
         self.current_index = Some(index);
-        index
+        Ok(index)
     }
 
     /// A polygon with corners counter-clockwise where it is seen from outside: a fan if it is convex, otherwise cut into

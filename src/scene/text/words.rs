@@ -51,6 +51,16 @@ impl Syntax {
         Syntax { classes }
     }
 
+    /// The same, but the bytes in `blanks` stand between words as spaces do.
+    pub const fn with_blanks(mut self, blanks: &[u8]) -> Syntax {
+        let mut i = 0;
+        while i < blanks.len() {
+            self.classes[blanks[i] as usize] = Class::Blank;
+            i += 1;
+        }
+        self
+    }
+
     #[inline(always)]
     fn class(&self, byte: u8) -> Class {
         self.classes[byte as usize]

@@ -7,8 +7,8 @@ use rtbench::Error;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Formats by extension, and where their fixtures lie below the folder of real scenes.
-const FORMATS: [(&str, &str); 4] =
-    [("aff", "fixtures/aff"), ("nff", "fixtures/nff"), ("ply", "fixtures/ply"), ("mgf", "mgf")];
+const FORMATS: [(&str, &str); 5] =
+    [("aff", "fixtures/aff"), ("nff", "fixtures/nff"), ("ply", "fixtures/ply"), ("mgf", "mgf"), ("iv", "fixtures/iv")];
 
 /// Largest fixture to be broken: a larger one is more of the same.
 const LARGEST: usize = 20_000;
@@ -17,7 +17,7 @@ const LARGEST: usize = 20_000;
 const VARIANTS: u64 = 300;
 
 /// Small files with everything in them, for where the fixtures are not at hand.
-const OWN: [(&str, &str); 4] = [
+const OWN: [(&str, &str); 6] = [
     ("all.aff", include_str!("../../data/all.aff")),
     (
         "all.nff",
@@ -26,6 +26,14 @@ const OWN: [(&str, &str); 4] = [
     ),
     ("all.mgf", include_str!("../../data/all.mgf")),
     ("cube.ply", CUBE),
+    ("all.iv", include_str!("../../data/all.iv")),
+    (
+        "all.wrl",
+        "#VRML V1.0 ascii\nDEF Cameras Switch { whichChild 0 PerspectiveCamera { position 0 1 5 } }\n\
+        Separator { Material { diffuseColor [ 1 0 0, 0 1 0 ] } MaterialBinding { value PER_FACE }\n\
+        Coordinate3 { point [ 0 0 0, 1 0 0, 1 1 .2, 0 1 0 ] }\n\
+        IndexedFaceSet { coordIndex [ 0, 1, 2, -1, 0, 2, 3, -1 ] } WWWInline { name \"cube.wrl\" ~ } }\n",
+    ),
 ];
 
 /// Numbers that a reader should not trust.
