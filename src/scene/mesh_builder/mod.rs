@@ -6,17 +6,15 @@
 
 mod curves;
 mod limits;
-mod polygon;
 mod warnings;
 
+use super::polygon::{Triangulator, newell};
 use super::text::Fault;
 use super::{Light, Material, Scene, Triangle};
 use crate::math::Vertex;
+use foldhash::{HashMap, HashMapExt};
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use limits::Limits;
-use polygon::Triangulator;
-pub use polygon::newell;
-use std::collections::HashMap;
 pub use warnings::Warnings;
 
 /// Most transforms inside each other.
@@ -187,6 +185,11 @@ impl MeshBuilder {
     /// # Errors
     /// The position is beyond single precision, or there are too many.
     pub fn vertex(&mut self, position: DVec3, normal: DVec3) -> Result<u32, Fault> {
+        self.shared_vertex(position, self.direction(normal))
+    }
+
+    /// The same with a normal that [`MeshBuilder::direction`] has brought into the scene.
+    fn shared_vertex(&mut self, position: DVec3, normal: Vec3) -> Result<u32, Fault> {
         let vertex = self.place(position, normal)?;
         let bits = [vertex.position, vertex.normal].map(|v| v.to_array().map(f32::to_bits));
         let key = [bits[0][0], bits[0][1], bits[0][2], bits[1][0], bits[1][1], bits[1][2]];
@@ -206,20 +209,23 @@ impl MeshBuilder {
         if let Some(&index) = self.shared.get(&key) {
             return Ok(index);
         }
-        let vertex = self.place(position, normal)?;
+        let vertex = self.place(position, self.direction(normal))?;
         self.store(key, vertex)
     }
 
     /// A vertex where the present transform puts it.
-    fn place(&self, position: DVec3, normal: DVec3) -> Result<Vertex, Fault> {
-        let frame = self.frame();
+    fn place(&self, position: DVec3, normal: Vec3) -> Result<Vertex, Fault> {
         // Adding zero makes -0 and 0 the same vertex
-        let position = frame.affine.transform_point3(position).as_vec3() + Vec3::ZERO;
+        let position = self.frame().affine.transform_point3(position).as_vec3() + Vec3::ZERO;
         if !position.is_finite() {
             return Err(Fault::new(None, format!("a corner at {position} is not finite in single precision"), FINITE));
         }
-        let normal = unit(frame.normals * unit(normal)).as_vec3() + Vec3::ZERO;
         Ok(Vertex::new(position, normal))
+    }
+
+    /// A normal of any length as the present transform turns it, of length one or zero.
+    fn direction(&self, normal: DVec3) -> Vec3 {
+        unit(self.frame().normals * unit(normal)).as_vec3() + Vec3::ZERO
     }
 
     fn store(&mut self, key: [u32; 6], vertex: Vertex) -> Result<u32, Fault> {
@@ -280,15 +286,17 @@ impl MeshBuilder {
             return Ok(());
         }
         let flat = newell(&corners[..outer]);
+        let own = self.direction(flat);
         let mut vertices = std::mem::take(&mut self.corners);
         vertices.clear();
         for (i, &corner) in corners.iter().enumerate() {
             let given = normals.get(i).copied().unwrap_or(DVec3::ZERO);
-            let normal = if unit(given) == DVec3::ZERO { flat } else { given };
-            if !normals.is_empty() && unit(given) == DVec3::ZERO {
+            let has_length = unit(given) != DVec3::ZERO;
+            if !normals.is_empty() && !has_length {
                 self.warnings.add("normal of no length: the polygon's own taken");
             }
-            vertices.push(self.vertex(corner, normal)?);
+            let normal = if has_length { self.direction(given) } else { own };
+            vertices.push(self.shared_vertex(corner, normal)?);
         }
         let mut triangulator = std::mem::take(&mut self.triangulator);
         for &[a, b, c] in triangulator.triangles(corners, holes, flat) {
