@@ -23,8 +23,7 @@ impl Extent {
 
     /// Of a whole scene.
     pub fn of(scene: &Scene) -> Extent {
-        let (a, b) =
-            rayon::join(|| Extent::of_triangles(&scene.triangles), || Extent::of_vertices(&scene.vertices));
+        let (a, b) = rayon::join(|| Extent::of_triangles(&scene.triangles), || Extent::of_vertices(&scene.vertices));
         a.and(b)
     }
 

@@ -183,7 +183,8 @@ impl Scene {
     /// # Errors
     /// [`Error::Input`] that names the scene and the first invariant that does not hold.
     pub fn check(&self) -> Result<()> {
-        self.first_fault(Extent::of(self)).map_or(Ok(()), |(problem, mend)| Err(Error::argument(self.name.clone(), problem, mend)))
+        self.first_fault(Extent::of(self))
+            .map_or(Ok(()), |(problem, mend)| Err(Error::argument(self.name.clone(), problem, mend)))
     }
 
     /// The first invariant that does not hold: problem and mend. `extent` is this scene's.
@@ -211,7 +212,8 @@ impl Scene {
             return Some((problem, "repair the triangle's material"));
         }
         if !extent.is_finite()
-            && let Some(i) = self.vertices.iter().position(|v| !v.position.is_finite() || !v.normal.is_finite()) {
+            && let Some(i) = self.vertices.iter().position(|v| !v.position.is_finite() || !v.normal.is_finite())
+        {
             return Some((format!("vertex {i} is not finite"), "remove it or repair the export"));
         }
         // Vertices that no triangle uses may lie anywhere: only then it takes the way by the triangles.

@@ -8,6 +8,7 @@ mod cache;
 mod catalogue;
 mod fetch;
 mod gltf;
+mod memory;
 mod mgf;
 mod mutation;
 mod obj;

@@ -21,11 +21,10 @@ pub fn prefer_large(memory: &mut [u8]) {
 
 #[cfg(target_os = "linux")]
 fn advise(memory: &mut [u8]) {
-    use rustix::mm::{Advice, madvise};
     // SAFETY: the range lies inside of a slice that is ours alone, and this advice changes how memory is backed, never
     // what is in it. A kernel without large pages says so in its answer; it works without.
     #[allow(unsafe_code)]
-    let _ = unsafe { madvise(memory.as_mut_ptr().cast(), memory.len(), Advice::LinuxHugepage) };
+    let _ = unsafe { libc::madvise(memory.as_mut_ptr().cast(), memory.len(), libc::MADV_HUGEPAGE) };
 }
 
 #[cfg(not(target_os = "linux"))]

@@ -1,12 +1,13 @@
 //! Named and unnamed contexts: the current vertex, colour or material.
 
 use crate::scene::text::{Fault, quote_bytes};
-use foldhash::HashMap;
+use foldhash::fast::RandomState;
+use std::collections::HashMap;
 
 /// The contexts of one kind.
 pub struct Contexts<T> {
     /// Places in `all`.
-    named: HashMap<Vec<u8>, usize>,
+    named: HashMap<Box<[u8]>, u32, RandomState>,
     /// The one without a name comes first.
     all: Vec<T>,
     current: usize,
@@ -49,11 +50,13 @@ impl<T: Clone + Default> Contexts<T> {
     /// The place of a name, which may be new.
     fn place_of_new(&mut self, name: &[u8]) -> usize {
         if let Some(&place) = self.named.get(name) {
-            return place;
+            return place as usize;
         }
+        let place = self.all.len();
         self.all.push(T::default());
-        self.named.insert(name.to_vec(), self.all.len() - 1);
-        self.all.len() - 1
+        // A file of 2^32 names would not fit into memory
+        self.named.insert(name.into(), place as u32);
+        place
     }
 
     /// The current context.
@@ -72,7 +75,7 @@ impl<T: Clone + Default> Contexts<T> {
     }
 
     fn place(&self, name: &[u8]) -> Result<usize, Fault> {
-        self.named.get(name).copied().ok_or_else(|| {
+        self.named.get(name).map(|&place| place as usize).ok_or_else(|| {
             let problem = format!("{} is not defined", quote_bytes(name));
             Fault::new(None, problem, "define it before, with `NAME =`")
         })

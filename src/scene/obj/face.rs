@@ -1,7 +1,7 @@
 //! Faces: corners, their vertices, triangles.
 
-use super::lines::{Lines, printable};
 use super::Fault;
+use super::lines::{Lines, printable};
 use crate::scene::Triangle;
 use crate::scene::polygon::{Triangulator, newell};
 use glam::{DVec3, Vec3};
