@@ -233,8 +233,8 @@ pub fn read(path: &Path, _: &Options) -> Result<Scene> {
     let field_of_view = header.field_of_view;
     let frames: Vec<Pose> = poses.iter().map(pose).collect();
     let sound = |pose: &Pose| pose.time.is_finite() && pose.position.is_finite() && pose.direction.is_normalized();
-    let opening = field_of_view > 0.0 && field_of_view < 180.0;
-    if !frames.is_empty() && !(opening && frames.iter().all(sound)) {
+    let camera_works = field_of_view > 0.0 && field_of_view < 180.0 && frames.iter().all(sound);
+    if !(frames.is_empty() || camera_works) {
         return Err(fault("the cache is corrupt: its camera is none", again));
     }
     let mut scene = Scene {
