@@ -1,13 +1,14 @@
-//! How fast scenes are read: `cargo bench --bench load`; RTBENCH_SCENES names the folder with the catalogue's scenes.
+//! How fast scenes are read: `cargo bench --bench load`; RTBENCH_SCENES names the folder with the real scenes.
 //!
-//! For every format the largest file of the catalogue that is here: megabytes per second on one core. Then the bar of the
-//! cache: the same scene from its source and from its `.rtb`, in turns, and the ratio of the medians.
+//! For every format the largest file below that folder: megabytes per second on one core. Files that it includes are read,
+//! but not counted. Then the bar of the cache: the same scene from its source and from its `.rtb`, in turns, and the median
+//! of the ratios; for files of a megabyte or more, since others load at once.
 
 mod common;
 
 use common::{median, sign_test_interval};
 use rtbench::scene::cache::{self, Source};
-use rtbench::scene::{FORMATS, Options, catalogue, load};
+use rtbench::scene::{FORMATS, Options, load};
 use std::collections::BTreeMap;
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
@@ -28,7 +29,8 @@ fn main() {
         for (extension, path) in &files {
             throughput(extension, path);
         }
-        for (extension, path) in &files {
+        let large = |path: &Path| path.metadata().is_ok_and(|m| m.len() >= 1_000_000);
+        for (extension, path) in files.iter().filter(|(_, path)| large(path)) {
             let cached = scratch.join(format!("{extension}.rtb"));
             let what = path.to_str().expect("a printable path");
             let source = Source::of(what, None).expect("readable");
@@ -39,25 +41,34 @@ fn main() {
     std::fs::remove_dir_all(&scratch).expect("removed");
 }
 
-/// The largest file of each format; a folder of OBJ files counts by its largest.
+/// The largest file of each format that its reader takes: fixtures may be broken.
 fn files() -> BTreeMap<String, PathBuf> {
-    let mut largest: BTreeMap<String, (u64, PathBuf)> = BTreeMap::new();
     let Some(folder) = std::env::var_os("RTBENCH_SCENES").map(PathBuf::from) else {
         eprintln!("nothing to measure: RTBENCH_SCENES is not set");
         return BTreeMap::new();
     };
-    for path in catalogue::entries().iter().filter_map(|entry| catalogue::locate(entry, &folder)) {
-        let inner = std::fs::read_dir(&path).into_iter().flatten().flatten().map(|entry| entry.path());
-        for file in inner.chain([path.clone()]).filter(|file| file.is_file()) {
-            let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-            let bytes = file.metadata().map_or(0, |m| m.len());
-            if largest.get(&extension).is_none_or(|(most, _)| bytes > *most) {
-                largest.insert(extension, (bytes, file));
+    let mut found: Vec<(u64, PathBuf)> = Vec::new();
+    let mut folders = vec![folder];
+    while let Some(folder) = folders.pop() {
+        for path in std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
+            match path.metadata() {
+                Ok(metadata) if metadata.is_dir() => folders.push(path),
+                Ok(metadata) => found.push((metadata.len(), path)),
+                Err(error) => eprintln!("{} is left out: {error}", path.display()),
             }
         }
     }
-    let known = |extension: &String| FORMATS.iter().any(|(name, _)| name == extension);
-    largest.into_iter().filter(|(extension, _)| known(extension)).map(|(name, (_, path))| (name, path)).collect()
+    found.sort_by(|a, b| b.cmp(a));
+    let mut largest = BTreeMap::new();
+    for (_, path) in found {
+        let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let reader = FORMATS.iter().find(|(name, _)| *name == extension).map(|(_, reader)| reader);
+        if reader.is_some_and(|reader| !largest.contains_key(&extension) && reader(&path, &Options::default()).is_ok())
+        {
+            largest.insert(extension, path);
+        }
+    }
+    largest
 }
 
 /// The reader alone, on one thread.
@@ -72,7 +83,7 @@ fn throughput(extension: &str, path: &Path) {
     };
     let rates: Vec<f64> = common::pool(1).install(|| (0..15).map(rate).collect());
     let (low, high) = sign_test_interval(&rates);
-    println!("{extension:<12} {megabytes:>9.2} {:>8.0} ({low:.0} to {high:.0})  {}", median(&rates), path.display());
+    println!("{extension:<12} {megabytes:>9.4} {:>8.0} ({low:.0} to {high:.0})  {}", median(&rates), path.display());
 }
 
 /// Loads each in turns, in an order that turns round every other time, and compares with the first.

@@ -159,7 +159,6 @@ impl Sweep<'_, '_> {
             verifier: Verifier::new(&scene, &reference.structure)?,
             images: HashMap::new(),
         };
-        self.pictures(&subject, &reference)?;
         // Each distinct tree is built once, serves all traversals over it, and is freed before the next is built.
         let mut waiting = plan.selections(what);
         while let Some(&first) = waiting.first() {
@@ -185,7 +184,8 @@ impl Sweep<'_, '_> {
                 Err(other) => return Err(other),
             }
         }
-        Ok(())
+        // Last: what is measured matters more where the disk is about to be full
+        self.pictures(&subject, &reference)
     }
 
     /// Take a scene's pictures. A device that is lost over them is opened again for the first measurement.

@@ -1,5 +1,6 @@
 //! Loading by name: files by their extension, folders and lists of files as one scene, built-in scenes, the catalogue.
 
+use super::extent::Extent;
 use super::{FORMATS, Material, Options, Reader, Scene, Triangle, catalogue, did_you_mean, procedural};
 use crate::error::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -43,7 +44,8 @@ pub fn load_in(what: &str, folder: Option<&Path>) -> Result<Scene> {
         return Err(Error::argument(what, format!("no file and no scene is called `{bare}`"), mend));
     }
     let mut scene = procedural::build(what)?;
-    scene.complete().map_err(|(problem, mend)| Error::argument(what, problem, mend))?;
+    let extent = Extent::of(&scene);
+    scene.complete(extent).map_err(|(problem, mend)| Error::argument(what, problem, mend))?;
     scene.count_degenerate();
     Ok(scene)
 }
@@ -93,18 +95,20 @@ fn load_entry(what: &str, entry: &catalogue::Entry, settings: &str, folder: Opti
 
 /// What every scene from a file goes through.
 fn finish(mut scene: Scene, place: &str, options: &Options) -> Result<Scene> {
+    let path = Path::new(place);
+    // A cache holds what has been through this; its reader has checked it again.
+    if is_cache(path) && *options == Options::default() {
+        return Ok(scene);
+    }
     scene.transform(options.up, options.scale);
     match (options.fov, &mut scene.camera) {
         (Some(fov), Some(camera)) => camera.field_of_view = fov,
         (Some(_), None) => scene.warnings.push("fov: there is no camera in the file that it could change".into()),
         (None, _) => {}
     }
-    let path = Path::new(place);
-    scene.complete().map_err(|(problem, mend)| Error::file(path, None, problem, mend))?;
-    // A cache brings the number.
-    if !(is_cache(path) && *options == Options::default()) {
-        scene.count_degenerate();
-    }
+    let extent = Extent::of(&scene);
+    scene.complete(extent).map_err(|(problem, mend)| Error::file(path, None, problem, mend))?;
+    scene.count_degenerate();
     Ok(scene)
 }
 

@@ -6,6 +6,7 @@
 pub mod aff;
 pub mod cache;
 pub mod catalogue;
+mod extent;
 pub mod gltf;
 pub mod inventor;
 pub mod lamps;
@@ -16,6 +17,7 @@ pub mod normals;
 pub mod obj;
 mod options;
 pub mod ply;
+pub mod polygon;
 pub mod procedural;
 mod suggest;
 pub mod text;
@@ -23,6 +25,7 @@ pub mod text;
 use crate::error::{Error, Result};
 use crate::math::{Aabb, Vertex};
 use bytemuck::{Pod, Zeroable};
+use extent::Extent;
 use glam::{Vec3, Vec3A};
 pub use load::{at_time, load, load_in};
 pub use options::{MAX_SEGMENTS, Options, Up};
@@ -183,11 +186,12 @@ impl Scene {
     /// # Errors
     /// [`Error::Input`] that names the scene and the first invariant that does not hold.
     pub fn check(&self) -> Result<()> {
-        self.first_fault().map_or(Ok(()), |(problem, mend)| Err(Error::argument(self.name.clone(), problem, mend)))
+        self.first_fault(Extent::of(self))
+            .map_or(Ok(()), |(problem, mend)| Err(Error::argument(self.name.clone(), problem, mend)))
     }
 
-    /// The first invariant that does not hold: problem and mend.
-    fn first_fault(&self) -> Option<(String, &'static str)> {
+    /// The first invariant that does not hold: problem and mend. `extent` is this scene's.
+    fn first_fault(&self, extent: Extent) -> Option<(String, &'static str)> {
         if self.triangles.is_empty() {
             return Some(("there is no triangle".into(), "a scene needs at least one"));
         }
@@ -198,25 +202,25 @@ impl Scene {
             }
         }
         let (vertices, materials) = (self.vertices.len() as u32, self.materials.len() as u32);
-        // Passes without branches first: files are sound almost always, and this is a good part of loading a cache.
-        let ((vertex, material), (sound, all)) = rayon::join(|| self.largest_indices(), || self.vertex_extent());
-        if vertex >= vertices
+        if extent.vertex() >= vertices
             && let Some(i) = self.triangles.iter().position(|t| t.vertices.iter().any(|&v| v >= vertices))
         {
             let problem = format!("triangle {i} uses a vertex beyond the {vertices} that there are");
             return Some((problem, "repair the triangle's indices"));
         }
-        if material >= materials
+        if extent.material() >= materials
             && let Some(i) = self.triangles.iter().position(|t| t.material >= materials)
         {
             let problem = format!("triangle {i} uses a material beyond the {materials} that there are");
             return Some((problem, "repair the triangle's material"));
         }
-        if !sound && let Some(i) = self.vertices.iter().position(|v| !v.position.is_finite() || !v.normal.is_finite()) {
+        if !extent.is_finite()
+            && let Some(i) = self.vertices.iter().position(|v| !v.position.is_finite() || !v.normal.is_finite())
+        {
             return Some((format!("vertex {i} is not finite"), "remove it or repair the export"));
         }
         // Vertices that no triangle uses may lie anywhere: only then it takes the way by the triangles.
-        if !all.diagonal().is_finite() && !self.bounds().diagonal().is_finite() {
+        if !extent.bounds().diagonal().is_finite() && !self.bounds().diagonal().is_finite() {
             return Some(("the scene is too large: its diagonal is not finite".into(), "scale it down"));
         }
         let colours = |m: &Material| [m.ambient, m.diffuse, m.specular];
@@ -234,25 +238,6 @@ impl Scene {
             return Some((format!("light {i} is not finite"), "give it a finite position and colour"));
         }
         None
-    }
-
-    /// The largest vertex index and the largest material index of all triangles.
-    fn largest_indices(&self) -> (u32, u32) {
-        self.triangles.iter().fold((0, 0), |(vertex, material), triangle| {
-            let [a, b, c] = triangle.vertices;
-            (vertex.max(a).max(b).max(c), material.max(triangle.material))
-        })
-    }
-
-    /// Whether all positions and normals are finite, and the box around all positions.
-    fn vertex_extent(&self) -> (bool, Aabb) {
-        let (mut sum, mut all) = (Vec3::ZERO, Aabb::EMPTY);
-        for vertex in &self.vertices {
-            // Zero, unless something is infinite or NaN
-            sum += vertex.position * 0.0 + vertex.normal * 0.0;
-            all = Aabb { min: all.min.min(vertex.position), max: all.max.max(vertex.position) };
-        }
-        (sum == Vec3::ZERO, all)
     }
 
     /// BLAKE3 of all that decides what is traced and shaded, hexadecimal: vertices, triangles, materials, lights and
@@ -308,12 +293,13 @@ impl Scene {
         }
     }
 
-    /// Gives a material where there is none, and checks the rest; a fault comes back as problem and mend.
-    fn complete(&mut self) -> Result<(), (String, &'static str)> {
+    /// Gives a material where there is none, and checks the rest; a fault comes back as problem and mend. `extent` is this
+    /// scene's.
+    fn complete(&mut self, extent: Extent) -> Result<(), (String, &'static str)> {
         if self.materials.is_empty() {
             self.materials.push(Material::neutral());
         }
-        self.first_fault().map_or(Ok(()), Err)
+        self.first_fault(extent).map_or(Ok(()), Err)
     }
 
     /// Counts the triangles without area of a scene that has been checked.

@@ -8,7 +8,7 @@ mod fakes; // records with known content, a device that breaks on demand
 mod kernels; // every kernel variant through naga, struct layouts, no GPU
 mod reference; // rays traced by Embree (needs RTBENCH_SCENES)
 mod results; // journal, CSV and JSON agree; statistics; rays and hits
-mod scene; // PLY of every kind, broken PLY of every kind, procedural scenes
+mod scene; // readers and what breaks them, memory while loading, caches, procedural scenes, the catalogue
 mod support; // small scenes, random numbers, the GPU if there is one
 mod sweep; // the sweep loop on a device that breaks, presets, the plan
 mod thesis; // the thesis's numbers, and tables, claims, figures and report from records

@@ -11,6 +11,7 @@ mod fetch;
 mod gltf;
 mod inventor;
 mod inventor_faces;
+mod memory;
 mod mgf;
 mod mutation;
 mod obj;

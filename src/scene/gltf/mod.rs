@@ -39,6 +39,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
 /// As [`read`].
 pub fn read_bytes(path: &Path, bytes: &[u8], options: &Options) -> Result<Scene> {
     let at = |(problem, mend): Fault| Error::file(path, None, problem, mend);
+    length_has_header(bytes).map_err(at)?;
     let unchecked = gltf::Gltf::from_slice_without_validation(bytes).map_err(|error| refusal(path, error))?;
     let json = unchecked.document.into_json();
     positions_exist(&json).map_err(at)?;
@@ -47,6 +48,17 @@ pub fn read_bytes(path: &Path, bytes: &[u8], options: &Options) -> Result<Scene>
     let mut walk = Walk::new(&document, &buffers);
     walk.scene().map_err(at)?;
     walk.finish().map_err(at)
+}
+
+/// The crate (1.4.1) takes the header's twelve bytes from the length that a GLB gives itself, and overflows if that is less.
+fn length_has_header(bytes: &[u8]) -> Result<(), Fault> {
+    let length = bytes.get(8..12).filter(|_| bytes.starts_with(b"glTF"));
+    match length.map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])) {
+        Some(length) if length < 12 => {
+            Err((format!("this is no GLB: its length is given as {length}"), "export it again"))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The crate's validation (1.4.1) looks into the accessor of a primitive's positions before it has checked that there is

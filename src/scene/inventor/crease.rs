@@ -4,7 +4,8 @@
 //! the crease angle of the corner's face's, as the format's library makes them.
 
 use super::faces::{Face, Faces};
-use crate::scene::mesh_builder::{MeshBuilder, newell};
+use crate::scene::mesh_builder::MeshBuilder;
+use crate::scene::polygon::newell;
 use crate::scene::text::Fault;
 use glam::DVec3;
 use std::collections::HashMap;

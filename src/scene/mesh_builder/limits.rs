@@ -7,9 +7,6 @@ use crate::scene::text::Fault;
 const BASE: usize = 64 << 20;
 const PER_BYTE: usize = 16;
 
-/// Bytes per place in the map of shared vertices: key, index, and the map's own byte; half as much again while it grows.
-const PER_PLACE: usize = 29 * 3 / 2;
-
 /// The memory that is left.
 pub struct Limits {
     allowed: usize,
@@ -36,10 +33,10 @@ impl Limits {
         self.hold(0)
     }
 
-    /// Holds the map of shared vertices, with that many places, against what is left.
+    /// Holds that many bytes, which are stored for a while, against what is left.
     #[inline]
-    pub fn hold(&self, places: usize) -> Result<(), Fault> {
-        if self.used + places * PER_PLACE > self.allowed { Err(self.exceeded()) } else { Ok(()) }
+    pub fn hold(&self, bytes: usize) -> Result<(), Fault> {
+        if self.used + bytes > self.allowed { Err(self.exceeded()) } else { Ok(()) }
     }
 
     /// Holds something of this size, which will be gone soon, against what is left.

@@ -6,16 +6,17 @@
 
 mod curves;
 mod limits;
-mod polygon;
+mod shared;
 mod warnings;
 
+use super::polygon::{Triangulator, newell};
 use super::text::Fault;
 use super::{Light, Material, Scene, Triangle};
 use crate::math::Vertex;
+use foldhash::fast::RandomState;
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use limits::Limits;
-use polygon::Triangulator;
-pub use polygon::newell;
+use shared::Shared;
 use std::collections::HashMap;
 pub use warnings::Warnings;
 
@@ -28,10 +29,10 @@ pub struct MeshBuilder {
     triangles: Vec<Triangle>,
     materials: Vec<Material>,
     lights: Vec<Light>,
-    /// The shape's vertices by the bits of position and normal.
-    shared: HashMap<[u32; 6], u32>,
+    /// The shape's vertices.
+    shared: Shared,
     /// Materials by their bits.
-    known: HashMap<[u32; 12], u32>,
+    known: HashMap<[u32; 12], u32, RandomState>,
     current: Material,
     /// Index of the current material, once a triangle has it.
     current_index: Option<u32>,
@@ -73,8 +74,8 @@ impl Default for MeshBuilder {
             triangles: Vec::new(),
             materials: Vec::new(),
             lights: Vec::new(),
-            shared: HashMap::new(),
-            known: HashMap::new(),
+            shared: Shared::default(),
+            known: HashMap::default(),
             current: Material::neutral(),
             current_index: None,
             stack: vec![Frame::new(DAffine3::IDENTITY)],
@@ -190,11 +191,7 @@ impl MeshBuilder {
 
     /// Begins a shape: nothing that follows shares a vertex with what came before.
     pub fn new_shape(&mut self) {
-        if !self.shared.is_empty() {
-            self.shared.clear();
-            // Clearing takes as long as the map is large: a large one must not stay behind for many small shapes
-            self.shared.shrink_to(1024);
-        }
+        self.shared.clear();
     }
 
     /// The index of a vertex, new or shared with an equal one of this shape. The normal may have any length; zero stays
@@ -203,13 +200,18 @@ impl MeshBuilder {
     /// # Errors
     /// The position is beyond single precision, or there are too many.
     pub fn vertex(&mut self, position: DVec3, normal: DVec3) -> Result<u32, Fault> {
+        self.shared_vertex(position, self.direction(normal))
+    }
+
+    /// The same with a normal that [`MeshBuilder::direction`] has brought into the scene.
+    fn shared_vertex(&mut self, position: DVec3, normal: Vec3) -> Result<u32, Fault> {
         let vertex = self.place(position, normal)?;
-        let bits = [vertex.position, vertex.normal].map(|v| v.to_array().map(f32::to_bits));
-        let key = [bits[0][0], bits[0][1], bits[0][2], bits[1][0], bits[1][1], bits[1][2]];
-        match self.shared.get(&key) {
-            Some(&index) => Ok(index),
-            None => self.store(key, vertex),
+        if let Some(index) = self.shared.find(&vertex, &self.vertices) {
+            return Ok(index);
         }
+        let index = self.store(vertex)?;
+        self.shared.insert(index, &self.vertices);
+        Ok(index)
     }
 
     /// The same for a mesh that has indices of its own: corners with the same two indices share a vertex, others do not.
@@ -217,34 +219,36 @@ impl MeshBuilder {
     /// # Errors
     /// As [`MeshBuilder::vertex`].
     pub fn indexed_vertex(&mut self, indices: [u32; 2], position: DVec3, normal: DVec3) -> Result<u32, Fault> {
-        // No position begins with this: it is not a number
-        let key = [u32::MAX, indices[0], indices[1], 0, 0, 0];
-        if let Some(&index) = self.shared.get(&key) {
+        if let Some(index) = self.shared.find_indices(indices) {
             return Ok(index);
         }
-        let vertex = self.place(position, normal)?;
-        self.store(key, vertex)
+        let vertex = self.place(position, self.direction(normal))?;
+        let index = self.store(vertex)?;
+        self.shared.insert_indices(indices, index);
+        Ok(index)
     }
 
     /// A vertex where the present transform puts it.
-    fn place(&self, position: DVec3, normal: DVec3) -> Result<Vertex, Fault> {
-        let frame = self.frame();
+    fn place(&self, position: DVec3, normal: Vec3) -> Result<Vertex, Fault> {
         // Adding zero makes -0 and 0 the same vertex
-        let position = frame.affine.transform_point3(position).as_vec3() + Vec3::ZERO;
+        let position = self.frame().affine.transform_point3(position).as_vec3() + Vec3::ZERO;
         if !position.is_finite() {
             return Err(Fault::new(None, format!("a corner at {position} is not finite in single precision"), FINITE));
         }
-        let normal = unit(frame.normals * unit(normal)).as_vec3() + Vec3::ZERO;
         Ok(Vertex::new(position, normal))
     }
 
-    fn store(&mut self, key: [u32; 6], vertex: Vertex) -> Result<u32, Fault> {
+    /// A normal of any length as the present transform turns it, of length one or zero.
+    fn direction(&self, normal: DVec3) -> Vec3 {
+        unit(self.frame().normals * unit(normal)).as_vec3() + Vec3::ZERO
+    }
+
+    fn store(&mut self, vertex: Vertex) -> Result<u32, Fault> {
         let index = self.vertices.len();
         self.limits.elements(index)?;
         self.limits.grow(size_of::<Vertex>())?;
-        self.limits.hold(self.shared.capacity())?;
+        self.limits.hold(self.shared.bytes())?;
         self.vertices.push(vertex);
-        self.shared.insert(key, index as u32);
         Ok(index as u32)
     }
 
@@ -299,15 +303,17 @@ impl MeshBuilder {
             return Ok(());
         }
         let flat = newell(&corners[..outer]);
+        let own = self.direction(flat);
         let mut vertices = std::mem::take(&mut self.corners);
         vertices.clear();
         for (i, &corner) in corners.iter().enumerate() {
             let given = normals.get(i).copied().unwrap_or(DVec3::ZERO);
-            let normal = if unit(given) == DVec3::ZERO { flat } else { given };
-            if !normals.is_empty() && unit(given) == DVec3::ZERO {
+            let has_length = unit(given) != DVec3::ZERO;
+            if !normals.is_empty() && !has_length {
                 self.warnings.add("normal of no length: the polygon's own taken");
             }
-            vertices.push(self.vertex(corner, normal)?);
+            let normal = if has_length { self.direction(given) } else { own };
+            vertices.push(self.shared_vertex(corner, normal)?);
         }
         let mut triangulator = std::mem::take(&mut self.triangulator);
         for &[a, b, c] in triangulator.triangles(corners, holes, flat) {
@@ -320,7 +326,9 @@ impl MeshBuilder {
 
     /// The mesh with its materials, lights and warnings.
     pub fn finish(self) -> Scene {
-        let MeshBuilder { mut vertices, mut triangles, materials, lights, warnings, .. } = self;
+        let MeshBuilder { mut vertices, mut triangles, materials, lights, warnings, shared, .. } = self;
+        // Before the vectors are copied into smaller ones
+        drop(shared);
         vertices.shrink_to_fit();
         triangles.shrink_to_fit();
         Scene { vertices, triangles, materials, lights, warnings: warnings.lines(), ..Scene::default() }

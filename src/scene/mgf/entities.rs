@@ -8,9 +8,10 @@ use crate::scene::text::{Fault, Trouble, Words, quote_bytes};
 use glam::DVec3;
 use std::path::Path;
 
-/// The words of an entity that follow its name: to the end of the line, and of the next if a backslash ends it.
-fn arguments<'a>(words: &mut Words<'a>) -> Vec<&'a [u8]> {
-    let mut found = Vec::new();
+/// The words of an entity that follow its name, in place of those before: to the end of the line, and of the next if a
+/// backslash ends it.
+fn arguments<'a>(words: &mut Words<'a>, found: &mut Vec<&'a [u8]>) {
+    found.clear();
     while let Some(word) = words.next_on_line() {
         if word != b"\\" || words.peek_on_line().is_some() {
             found.push(word);
@@ -18,7 +19,6 @@ fn arguments<'a>(words: &mut Words<'a>) -> Vec<&'a [u8]> {
             found.push(word);
         }
     }
-    found
 }
 
 /// So many numbers, and no more.
@@ -41,15 +41,16 @@ impl Reader {
             let problem = format!("more than {MAX_DEPTH} transforms and files inside each other");
             return Err(Fault::new(None, problem, "flatten the hierarchy").into());
         }
+        let mut following = Vec::new();
         while let Some(entity) = words.next() {
             let line = words.line();
             if entity[0] == b'#' {
                 words.skip_line();
                 continue;
             }
-            let arguments = arguments(words);
-            self.pass(1 + arguments.len()).map_err(|fault| fault.at(line))?;
-            match (entity, arguments.as_slice()) {
+            arguments(words, &mut following);
+            self.pass(1 + following.len()).map_err(|fault| fault.at(line))?;
+            match (entity, following.as_slice()) {
                 (b"xf", []) => {
                     if begun.is_none() {
                         return Err(Fault::new(Some(line), "`xf` ends no transform", "remove it").into());

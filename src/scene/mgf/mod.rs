@@ -88,12 +88,21 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     };
     reader.mesh.read(bytes.len());
     reader.file(path, &bytes)?;
-    let mut scene = reader.mesh.finish();
-    reader.emitters.light(&mut scene);
-    Ok(scene)
+    drop(bytes);
+    Ok(reader.finish())
 }
 
 impl Reader {
+    /// The scene.
+    fn finish(self) -> Scene {
+        let Reader { includes, mesh, vertices, emitters, .. } = self;
+        // Before the mesh is copied into less room
+        drop((includes, vertices));
+        let mut scene = mesh.finish();
+        emitters.light(&mut scene);
+        scene
+    }
+
     /// Goes through one file.
     fn file(&mut self, path: &Path, bytes: &[u8]) -> Result<()> {
         let mut words = Words::new(bytes, &SYNTAX);

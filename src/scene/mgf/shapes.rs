@@ -2,7 +2,7 @@
 
 use super::transform::number_of;
 use super::{Point, Reader};
-use crate::scene::mesh_builder::newell;
+use crate::scene::polygon::newell;
 use crate::scene::text::Fault;
 use glam::DVec3;
 

@@ -1,9 +1,10 @@
 //! Faces: corners, their vertices, triangles.
 
+use super::Fault;
 use super::lines::{Lines, printable};
-use super::{Fault, polygon};
 use crate::scene::Triangle;
-use glam::Vec3;
+use crate::scene::polygon::{Triangulator, newell};
+use glam::{DVec3, Vec3};
 
 /// What makes two corners at the same position one vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,8 +77,10 @@ pub struct Faces {
     pub small: usize,
     smoothing: Smoothing,
     faces: u32,
-    /// Corners of the current face: its vertices.
+    /// Corners of the current face: its vertices, and where they lie.
     corners: Vec<u32>,
+    points: Vec<DVec3>,
+    triangulator: Triangulator,
 }
 
 impl Default for Faces {
@@ -94,6 +97,8 @@ impl Default for Faces {
             smoothing: Smoothing::Group(0),
             faces: 0,
             corners: Vec::new(),
+            points: Vec::new(),
+            triangulator: Triangulator::default(),
         }
     }
 }
@@ -124,12 +129,15 @@ impl Faces {
             [] | [_] | [_, _] => self.small += 1,
             [a, b, c] => self.triangles.push(add(a, b, c)),
             _ => {
-                let (corners, keys, positions) = (&self.corners, &self.keys, &self.positions);
-                let points = |i: usize| positions[keys[corners[i] as usize].position as usize];
-                let triangles = &mut self.triangles;
-                polygon::triangulate(corners.len(), points, |t| {
-                    triangles.push(add(corners[t[0]], corners[t[1]], corners[t[2]]));
-                });
+                let (keys, positions) = (&self.keys, &self.positions);
+                let point = |&v: &u32| positions[keys[v as usize].position as usize].as_dvec3();
+                self.points.clear();
+                self.points.extend(self.corners.iter().map(point));
+                let normal = newell(&self.points);
+                let corner = |i: u32| self.corners[i as usize];
+                for &[a, b, c] in self.triangulator.triangles(&self.points, &[], normal) {
+                    self.triangles.push(add(corner(a), corner(b), corner(c)));
+                }
             }
         }
         Ok(())

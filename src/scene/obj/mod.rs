@@ -6,8 +6,7 @@
 //! its.
 //!
 //! What is taken: `v`, `vn`, `f`, `s`, `usemtl`, `mtllib`; `vt`, `g` and `o` are passed over. Triangles stand in file
-//! order, a polygon with corners 0 to n as the fan (0, k + 1, k + 2), or by ear clipping where it is concave, which makes
-//! as many triangles. A vertex is a position with a normal: corners with different normals become different vertices.
+//! order, polygons as [`super::polygon`] says. A vertex is a position with a normal: corners with different normals become different vertices.
 //! Where the file has no normals, they are smooth inside a smoothing group, flat after `s off`, and smooth everywhere if
 //! the file never says `s`.
 //!
@@ -16,7 +15,6 @@
 mod face;
 mod lines;
 pub mod mtl;
-mod polygon;
 
 use super::{Material, Options, Scene, lamps, normals};
 use crate::error::{Error, Result};

@@ -74,7 +74,7 @@ fn check_counts<S: Source>(header: &Header, length: usize) -> Result<(), Fault> 
                     "{} elements {} need at least {least} bytes, but only {} bytes are left in the file",
                     element.count,
                     quote(&element.name),
-                    left - 1
+                    left.saturating_sub(1)
                 ),
                 "the file is truncated or its header is wrong",
             ));

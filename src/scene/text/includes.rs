@@ -22,7 +22,7 @@ pub struct Includes {
     root: PathBuf,
     outside: bool,
     /// Bytes by the file's path without links.
-    files: HashMap<PathBuf, Rc<[u8]>>,
+    files: HashMap<PathBuf, Rc<Vec<u8>>>,
     /// What is being read, from the first file inwards.
     open: Vec<PathBuf>,
     readings: usize,
@@ -37,8 +37,8 @@ impl Includes {
     ///
     /// # Errors
     /// The file cannot be read.
-    pub fn new(path: &Path, outside: bool) -> Result<(Includes, Rc<[u8]>)> {
-        let bytes: Rc<[u8]> = crate::scene::read_file(path)?.into();
+    pub fn new(path: &Path, outside: bool) -> Result<(Includes, Rc<Vec<u8>>)> {
+        let bytes = Rc::new(crate::scene::read_file(path)?);
         let whole = path.canonicalize().unwrap_or_else(|_| path.to_owned());
         let root = whole.parent().map(Path::to_owned).unwrap_or_default();
         let files = HashMap::from([(whole.clone(), Rc::clone(&bytes))]);
@@ -57,7 +57,7 @@ impl Includes {
     ///
     /// # Errors
     /// It may not be included, or cannot be read.
-    pub fn open(&mut self, including: &Path, name: &[u8]) -> Result<(PathBuf, Rc<[u8]>), Fault> {
+    pub fn open(&mut self, including: &Path, name: &[u8]) -> Result<(PathBuf, Rc<Vec<u8>>), Fault> {
         let fault = |problem: &str, mend: String| {
             Err(Fault::new(None, format!("include {}: {problem}", quote_bytes(name)), mend))
         };
@@ -81,8 +81,8 @@ impl Includes {
         let bytes = match self.files.get(&whole) {
             Some(bytes) => Rc::clone(bytes),
             None => {
-                let bytes: Rc<[u8]> = match crate::scene::read_file(&whole) {
-                    Ok(bytes) => bytes.into(),
+                let bytes = match crate::scene::read_file(&whole) {
+                    Ok(bytes) => Rc::new(bytes),
                     Err(error) => return fault(&error.to_string(), String::new()),
                 };
                 self.bytes += bytes.len();

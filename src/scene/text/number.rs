@@ -71,16 +71,20 @@ pub fn float(bytes: &[u8]) -> Option<(f32, usize)> {
     }
 }
 
+/// A number in double precision of the kind that most are: few digits, no exponent. `None` says nothing about others.
+#[inline(always)]
+pub fn plain_double(bytes: &[u8]) -> Option<(f64, usize)> {
+    let d = decimal(bytes)?;
+    (d.mantissa <= 1 << 53 && d.places < EXACT_F64.len()).then(|| {
+        let value = d.mantissa as f64 / EXACT_F64[d.places];
+        (if d.negative { -value } else { value }, d.length)
+    })
+}
+
 /// A number in double precision, correctly rounded; also infinite or NaN, if the text says so.
 #[inline]
 pub fn double(bytes: &[u8]) -> Option<(f64, usize)> {
-    match decimal(bytes) {
-        Some(d) if d.mantissa <= 1 << 53 && d.places < EXACT_F64.len() => {
-            let value = d.mantissa as f64 / EXACT_F64[d.places];
-            Some((if d.negative { -value } else { value }, d.length))
-        }
-        _ => by_standard_library(bytes),
-    }
+    plain_double(bytes).or_else(|| by_standard_library(bytes))
 }
 
 /// A whole number that fits into 18 digits, and thereby any index.

@@ -157,6 +157,7 @@ impl<'a> Words<'a> {
     }
 
     /// The next word, which stays.
+    #[inline]
     pub fn peek(&mut self) -> Option<&'a [u8]> {
         self.seek();
         Some(self.word()).filter(|word| !word.is_empty())
@@ -172,6 +173,7 @@ impl<'a> Words<'a> {
     }
 
     /// The next word, if it stands in the line of the word that was read last.
+    #[inline]
     pub fn next_on_line(&mut self) -> Option<&'a [u8]> {
         let (at, here) = (self.at, self.here);
         match self.peek() {
@@ -236,6 +238,18 @@ impl<'a> Words<'a> {
     /// It is none; `what` says for whom it was.
     #[inline]
     pub fn number(&mut self, what: &str) -> Result<f64, Fault> {
+        self.seek();
+        // A number that ends at a blank is a word of its own, whatever the syntax: no need to look for its end first
+        if let Some((value, length)) = number::plain_double(&self.bytes[self.at..]) {
+            self.line = self.here;
+            self.at += length;
+            return Ok(value);
+        }
+        self.other_number(what)
+    }
+
+    /// Numbers with an exponent or many digits, right before punctuation, not finite, or none at all.
+    fn other_number(&mut self, what: &str) -> Result<f64, Fault> {
         let word = self.need(what)?;
         match number::double(word) {
             Some((value, length)) if length == word.len() && value.is_finite() => Ok(value),
@@ -267,6 +281,12 @@ impl<'a> Words<'a> {
     /// It is none.
     #[inline]
     pub fn integer(&mut self, what: &str) -> Result<i64, Fault> {
+        self.seek();
+        if let Some((value, length)) = number::integer(&self.bytes[self.at..]) {
+            self.line = self.here;
+            self.at += length;
+            return Ok(value);
+        }
         let word = self.need(what)?;
         match number::integer(word) {
             Some((value, length)) if length == word.len() => Ok(value),

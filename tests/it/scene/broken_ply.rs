@@ -150,3 +150,12 @@ proptest! {
         }
     }
 }
+
+/// Found by fuzzing: the vertices use all that there is, down to the byte that the last value of a text may lack.
+#[test]
+fn a_body_that_ends_with_its_first_element_is_refused() {
+    let header = "ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty uchar x\nproperty uchar y\nproperty uchar z\n\
+        element face 1\nproperty list uchar uchar vertex_indices\nend_header\n";
+    let message = super::refusal(super::load_bytes(&[header.as_bytes(), &[0; 5]].concat()));
+    assert!(message.contains("only 0 bytes are left"), "{message}");
+}

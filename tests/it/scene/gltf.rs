@@ -39,7 +39,8 @@ fn document() -> Value {
     })
 }
 
-fn glb(document: &Value, bytes: &[u8]) -> Vec<u8> {
+/// A document and its buffer in one file.
+pub(super) fn glb(document: &Value, bytes: &[u8]) -> Vec<u8> {
     let mut text = document.to_string().into_bytes();
     text.resize(text.len().next_multiple_of(4), b' ');
     let length = 12 + 8 + text.len() + 8 + bytes.len();
@@ -352,4 +353,13 @@ proptest! {
             prop_assert!(["too large", "is not finite"].iter().any(|words| error.contains(words)), "{}", error);
         }
     }
+}
+
+/// Found by fuzzing: a length that leaves no room for the header it stands in.
+#[test]
+fn a_glb_shorter_than_its_header_is_refused() {
+    let mut bytes = glb(&document(), &bytes());
+    bytes[8..12].copy_from_slice(&11u32.to_le_bytes());
+    let message = refusal(gltf::read_bytes(Path::new("a.glb"), &bytes, &Options::default()));
+    assert!(message.contains("its length is given as 11"), "{message}");
 }

@@ -1,9 +1,16 @@
 //! Thousands of broken variants of every fixture, the same ones on every machine: each is read or refused with one line;
-//! none panics, and none grows beyond the limit.
+//! none panics, none hangs, and none takes more memory than sixteen times its file and 64 MiB.
+
+mod guard;
+mod mutate;
 
 use super::ply::CUBE;
-use super::{Files, real_scenes};
+use super::{Files, gltf, real_scenes};
+use base64::Engine;
+use guard::Watchdog;
+use mutate::Random;
 use rtbench::Error;
+use rtbench::scene::cache::{self, Source};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Formats by extension, and where their fixtures lie below the folder of real scenes.
@@ -13,8 +20,9 @@ const FORMATS: [(&str, &str); 5] =
 /// Largest fixture to be broken: a larger one is more of the same.
 const LARGEST: usize = 20_000;
 
-/// Variants of each fixture.
+/// Variants of each fixture, and of each file of our own.
 const VARIANTS: u64 = 300;
+const OWN_VARIANTS: u64 = 2000;
 
 /// Small files with everything in them, for where the fixtures are not at hand.
 const OWN: [(&str, &str); 6] = [
@@ -36,121 +44,87 @@ const OWN: [(&str, &str); 6] = [
     ),
 ];
 
-/// Numbers that a reader should not trust.
-const NUMBERS: [&str; 14] = [
-    "0",
-    "-1",
-    "1e38",
-    "1e400",
-    "-1e38",
-    "nan",
-    "inf",
-    "2147483648",
-    "4294967296",
-    "1000000000",
-    "18446744073709551616",
-    "1e-320",
-    "1.",
-    ".",
-];
+/// One fixture to be broken.
+struct Case<'a> {
+    /// The file that is broken.
+    name: &'a str,
+    original: &'a [u8],
+    /// The file that is loaded: this one or one that uses it.
+    load: &'a str,
+    /// What lies beside it.
+    beside: &'a [(String, Vec<u8>)],
+    mutate: fn(&[u8], &mut Random) -> Vec<u8>,
+    variants: u64,
+}
 
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0
-    }
-
-    fn below(&mut self, n: usize) -> usize {
-        (self.next() % n.max(1) as u64) as usize
+impl<'a> Case<'a> {
+    fn new(name: &'a str, original: &'a [u8], mutate: fn(&[u8], &mut Random) -> Vec<u8>) -> Case<'a> {
+        Case { name, original, load: name, beside: &[], mutate, variants: VARIANTS }
     }
 }
 
-/// Where words (or lines) begin and end.
-fn pieces(bytes: &[u8], ends: fn(u8) -> bool) -> Vec<(usize, usize)> {
-    let mut found = Vec::new();
-    let mut start = None;
-    for (i, &byte) in bytes.iter().chain(b"\n").enumerate() {
-        match (ends(byte), start) {
-            (false, None) => start = Some(i),
-            (true, Some(from)) => {
-                found.push((from, i));
-                start = None;
-            }
-            _ => {}
-        }
-    }
-    found
-}
-
-/// Breaks the file in one to four places.
-fn mutate(original: &[u8], random: &mut Random) -> Vec<u8> {
-    let mut bytes = original.to_vec();
-    for _ in 0..1 + random.below(4) {
-        if bytes.is_empty() {
-            return bytes;
-        }
-        let by_line = random.below(2) == 0;
-        let pieces = pieces(&bytes, if by_line { |b| b == b'\n' } else { |b| b <= b' ' });
-        let (from, to) = pieces.get(random.below(pieces.len())).copied().unwrap_or((0, bytes.len()));
-        match random.below(8) {
-            0 => {
-                let at = random.below(bytes.len());
-                bytes[at] ^= 1 << random.below(8);
-            }
-            1 => bytes.truncate(random.below(bytes.len())),
-            2 => drop(bytes.drain(from..to)),
-            3 => {
-                let copy = [&bytes[from..to], b"\n"].concat();
-                bytes.splice(from..from, copy);
-            }
-            4 => {
-                let at = random.below(bytes.len());
-                bytes[at] = random.next() as u8;
-            }
-            5 => {
-                let other = pieces.get(random.below(pieces.len())).map(|&(from, to)| bytes[from..to].to_vec());
-                bytes.splice(from..to, other.unwrap_or_default());
-            }
-            _ => drop(bytes.splice(from..to, NUMBERS[random.below(NUMBERS.len())].bytes())),
-        }
-    }
-    bytes
+/// The variant that alone is wanted, as `NAME:NUMBER` in RTBENCH_VARIANT.
+fn wanted() -> Option<(String, u64)> {
+    let wanted = std::env::var("RTBENCH_VARIANT").ok()?;
+    let (name, variant) = wanted.rsplit_once(':').expect("RTBENCH_VARIANT is NAME:NUMBER");
+    Some((name.to_owned(), variant.parse().expect("RTBENCH_VARIANT is NAME:NUMBER")))
 }
 
 /// Loads the variants of one file, in a folder with what it includes. Returns how many were read.
-fn break_it(name: &str, original: &[u8], beside: &[(String, Vec<u8>)]) -> u64 {
+fn break_it(case: &Case) -> u64 {
     let files = Files::new(&[]);
-    for (name, bytes) in beside {
+    for (name, bytes) in case.beside {
         files.write(name, bytes);
     }
-    let total: usize = original.len() + beside.iter().map(|(_, bytes)| bytes.len()).sum::<usize>();
-    let mut random = Random(0x9e37_79b9_7f4a_7c15 ^ seed_of(name));
+    let beside: usize = case.beside.iter().filter(|(name, _)| name != case.name).map(|(_, bytes)| bytes.len()).sum();
+    let watchdog = Watchdog::new();
     let mut read = 0;
-    for variant in 0..VARIANTS {
-        let bytes = mutate(original, &mut random);
-        files.write(name, &bytes);
-        let result = catch_unwind(AssertUnwindSafe(|| files.load(name)));
-        let Ok(result) = result else {
-            panic!("{name}, variant {variant} panics:\n{}", String::from_utf8_lossy(&bytes));
-        };
+    let only = wanted();
+    for variant in 0..case.variants {
+        if only.as_ref().is_some_and(|(name, number)| name != case.name || *number != variant) {
+            continue;
+        }
+        let what = format!(
+            "{0}, variant {variant} (again: RTBENCH_VARIANT={0}:{variant} cargo test --release --test it mutation)",
+            case.name
+        );
+        // Each has a seed of its own, so that it can be made again without those before it
+        let mut random = Random(seed_of(&format!("{} {variant}", case.name)) | 1);
+        let bytes = (case.mutate)(case.original, &mut random);
+        // A byte may have been replaced by its like
+        if bytes == case.original {
+            continue;
+        }
+        if only.is_some() {
+            eprintln!("{what}:\n{}", String::from_utf8_lossy(&bytes));
+        }
+        files.write(case.name, &bytes);
+        watchdog.begin(&what);
+        let mut result = None;
+        let counted = allocation_counter::measure(|| {
+            result = catch_unwind(AssertUnwindSafe(|| files.load(case.load))).ok();
+        });
+        let result = result.unwrap_or_else(|| panic!("{what}: panics"));
+        guard::hold_memory(&what, counted.bytes_max, beside + bytes.len());
         match result {
             Ok(scene) => {
                 read += 1;
-                scene.check().unwrap();
-                let size = scene.vertices.len() * 32 + scene.triangles.len() * 16;
-                assert!(size <= 16 * (total + bytes.len()) + (64 << 20), "{name}, variant {variant}: {size} bytes");
+                scene.check().unwrap_or_else(|error| panic!("{what}: {error}"));
             }
             Err(error) => {
-                assert!(matches!(error, Error::Input(_)), "{name}, variant {variant}: {error:?}");
-                assert!(!error.to_string().contains('\n'), "{name}, variant {variant}: {error}");
+                assert!(matches!(error, Error::Input(_)), "{what}: {error:?}");
+                assert!(!error.to_string().contains('\n'), "{what}: {error}");
             }
         }
     }
     read
+}
+
+/// Breaks a file of our own: some variants should still be read, some not.
+fn break_own(case: &Case) {
+    let read = break_it(case);
+    let some = wanted().is_some() || (1..case.variants).contains(&read);
+    assert!(some, "{}: {read} of {} variants read; some should be, some not", case.name, case.variants);
 }
 
 /// A seed from a name (FNV-1a).
@@ -163,8 +137,7 @@ fn own_files_survive_every_mutation() {
     for (name, text) in OWN {
         let whole = Files::new(&[(name, text)]).load(name);
         assert!(whole.is_ok(), "{name}: {}", whole.unwrap_err());
-        let read = break_it(name, text.as_bytes(), &[]);
-        assert!((1..VARIANTS).contains(&read), "{name}: {read} of {VARIANTS} variants read; some should be, some not");
+        break_own(&Case { variants: OWN_VARIANTS, ..Case::new(name, text.as_bytes(), mutate::text) });
     }
 }
 
@@ -181,7 +154,58 @@ fn fixtures_survive_every_mutation() {
             .collect();
         files.sort();
         assert!(files.len() >= 3, "{format}: only {} fixtures", files.len());
-        let read: u64 = files.iter().map(|(name, bytes)| break_it(name, bytes, &files)).sum();
+        let read: u64 = files
+            .iter()
+            .map(|(name, bytes)| break_it(&Case { beside: &files, ..Case::new(name, bytes, mutate::text) }))
+            .sum();
         eprintln!("{format}: {read} of {} variants read, the others refused", VARIANTS * files.len() as u64);
     }
+}
+
+#[test]
+fn meshes_with_a_material_library_survive_every_mutation() {
+    let [obj, mtl] = [("all.obj", include_str!("../../data/all.obj")), ("all.mtl", include_str!("../../data/all.mtl"))];
+    let files = [obj, mtl].map(|(name, text)| (name.to_owned(), text.as_bytes().to_vec()));
+    let whole = Files::new(&[obj, mtl]).load("all.obj").unwrap();
+    assert!(whole.materials.len() >= 3 && !whole.lights.is_empty(), "{:?}", whole.warnings);
+    for (name, bytes) in &files {
+        let case = Case::new(name, bytes, mutate::text);
+        break_own(&Case { load: "all.obj", beside: &files, variants: OWN_VARIANTS, ..case });
+    }
+}
+
+#[test]
+fn gltf_of_both_kinds_survives_every_mutation() {
+    let text = include_str!("../../data/all.gltf");
+    let mut document: serde_json::Value = serde_json::from_str(text).unwrap();
+    let uri = document["buffers"][0].as_object_mut().unwrap().remove("uri").unwrap();
+    let (_, data) = uri.as_str().unwrap().split_once(',').unwrap();
+    let buffer = base64::engine::general_purpose::STANDARD.decode(data).unwrap();
+    let binary = gltf::glb(&document, &buffer);
+    let files = Files::new(&[("all.gltf", text)]);
+    files.write("all.glb", &binary);
+    let [a, b] = ["all.gltf", "all.glb"].map(|name| files.load(name).unwrap());
+    assert!(
+        a.content_hash() == b.content_hash() && a.triangles.len() >= 8 && a.camera.is_some() && a.lights.len() == 3
+    );
+    break_own(&Case { variants: OWN_VARIANTS, ..Case::new("all.gltf", text.as_bytes(), mutate::text) });
+    break_own(&Case { variants: OWN_VARIANTS, ..Case::new("all.glb", &binary, mutate::bytes) });
+}
+
+#[test]
+fn caches_survive_every_mutation() {
+    let files = Files::new(&[("all.aff", OWN[0].1)]);
+    let mut scene = files.load("all.aff:segments=4").unwrap();
+    scene.warnings.truncate(2);
+    cache::write(&scene, &Source::default(), &files.path("all.rtb")).unwrap();
+    let bytes = std::fs::read(files.path("all.rtb")).unwrap();
+    // The checksum sees everything; with a right one, the other checks have to.
+    let caught = break_it(&Case::new("all.rtb", &bytes, mutate::bytes));
+    assert!(wanted().is_some() || caught == 0, "{caught} broken caches were read");
+    let resealed = |original: &[u8], random: &mut Random| {
+        let mut bytes = mutate::bytes(original, random);
+        cache::reseal(&mut bytes);
+        bytes
+    };
+    break_own(&Case { variants: OWN_VARIANTS, ..Case::new("resealed.rtb", &bytes, resealed) });
 }

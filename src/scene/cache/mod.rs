@@ -1,7 +1,8 @@
 //! `.rtb`: a scene as loaded, in one binary file that is read in one go.
 //!
 //! A header of fixed size, then vertices, triangles, materials, lights and the camera's poses as they lie in memory, then
-//! the texts as JSON. All numbers are little-endian. A BLAKE3 checksum covers all of it.
+//! the texts as JSON. All numbers are little-endian. A checksum (XXH3, 128 bits) covers all of it: against damage, not
+//! against forgers, who could hash as well, so that what was read is checked like any other file's content.
 //!
 //! A cache is refused, never repaired. It is *foreign* without the magic bytes, *truncated* or *corrupt* where lengths or
 //! the checksum do not fit, and **stale** where loading the source again might give another scene:
@@ -11,58 +12,26 @@
 //! - a file with the source's name lies beside it, and is not what the cache was made from. That file is hashed only if
 //!   its length differs or it was modified after the cache; of scenes with includes only the file that was named counts.
 
-use super::{Light, MAX_ELEMENTS, Material, Options, Pose, Scene, SceneCamera, Triangle, load};
+mod layout;
+mod pages;
+mod parts;
+
+use super::extent::Extent;
+use super::{Light, Material, Options, Pose, Scene, SceneCamera, Triangle, load};
 use crate::error::{Error, Result};
 use crate::math::Vertex;
-use bytemuck::{Pod, Zeroable};
+use bytemuck::Zeroable;
 use glam::Vec3;
-use rayon::prelude::*;
+pub use layout::FORMAT;
+use layout::{Header, MAGIC, RawPose, pose, raw_pose, readers};
+use parts::{Checksum, Parts};
 use serde::{Deserialize, Serialize};
 use std::fs::File;
-use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
+use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// The extension of caches.
 pub const EXTENSION: &str = "rtb";
-
-/// Version of the layout.
-pub const FORMAT: u32 = 1;
-
-const MAGIC: [u8; 8] = *b"RTBSCENE";
-
-/// A hash of the readers' source, from `build.rs`.
-const READERS: &str = env!("RTBENCH_READERS");
-
-/// Most bytes of texts: names and warnings.
-const MAX_TEXT: u64 = 1 << 24;
-
-#[derive(Clone, Copy, Pod, Zeroable)]
-#[repr(C)]
-struct Header {
-    magic: [u8; 8],
-    format: u32,
-    /// Vertical, degrees; of no meaning without poses.
-    field_of_view: f32,
-    /// The hash of the readers' source, as text.
-    readers: [u8; 16],
-    /// BLAKE3 of this header, with zeros here, and of the BLAKE3 of every piece of every part.
-    checksum: [u8; 32],
-    /// BLAKE3 of the source's bytes, zero if there is no file behind the scene.
-    source: [u8; 32],
-    source_bytes: u64,
-    vertices: u64,
-    triangles: u64,
-    materials: u64,
-    lights: u64,
-    poses: u64,
-    text: u64,
-    background: [f32; 3],
-    pad: u32,
-    degenerate: u64,
-}
-
-/// A pose, with everything in double precision.
-type RawPose = [f64; 10];
 
 /// The texts of a scene.
 #[derive(Serialize, Deserialize)]
@@ -140,7 +109,7 @@ pub fn write(scene: &Scene, source: &Source, path: &Path) -> Result<()> {
         format: FORMAT,
         field_of_view: scene.camera.as_ref().map_or(0.0, |camera| camera.field_of_view),
         readers: readers(),
-        checksum: [0; 32],
+        checksum: [0; 16],
         source: source_hash,
         source_bytes,
         vertices: scene.vertices.len() as u64,
@@ -161,12 +130,11 @@ pub fn write(scene: &Scene, source: &Source, path: &Path) -> Result<()> {
         bytemuck::cast_slice(&poses),
         &text,
     ];
-    let mut hasher = blake3::Hasher::new();
-    hasher.update(bytemuck::bytes_of(&header));
-    for part in parts {
-        part.chunks(PIECE).for_each(|piece| add(&mut hasher, &blake3::hash(piece)));
+    let mut checksum = Checksum::new(bytemuck::bytes_of(&header));
+    for ((_, size), part) in header.parts().into_iter().zip(parts) {
+        checksum.add(part, size);
     }
-    header.checksum = *hasher.finalize().as_bytes();
+    header.checksum = checksum.finish();
 
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(format!(".{}.part", std::process::id()));
@@ -185,7 +153,27 @@ pub fn write(scene: &Scene, source: &Source, path: &Path) -> Result<()> {
     })
 }
 
-/// Reads a cache.
+/// Makes the checksum right, and the readers ours, of a cache that somebody has changed: for tests of what lies behind
+/// those checks. What is no cache, by its lengths, stays as it is.
+pub fn reseal(bytes: &mut [u8]) {
+    let Some((start, parts)) = bytes.split_at_mut_checked(size_of::<Header>()) else { return };
+    let mut header: Header = bytemuck::pod_read_unaligned(start);
+    if header.total() != Some((start.len() + parts.len()) as u64) {
+        return;
+    }
+    (header.readers, header.checksum) = (readers(), [0; 16]);
+    let mut checksum = Checksum::new(bytemuck::bytes_of(&header));
+    let mut rest: &[u8] = parts;
+    for (count, size) in header.parts() {
+        let (part, behind) = rest.split_at(count as usize * size);
+        checksum.add(part, size);
+        rest = behind;
+    }
+    header.checksum = checksum.finish();
+    start.copy_from_slice(bytemuck::bytes_of(&header));
+}
+
+/// Reads a cache: a scene that has gone through all checks.
 ///
 /// # Errors
 /// [`Error::Input`]: no cache, or one that is stale, truncated or corrupt.
@@ -228,15 +216,15 @@ pub fn read(path: &Path, _: &Options) -> Result<Scene> {
         }
         Some(_) => {}
     }
-    let mut parts = Parts { path, at: size_of::<Header>() as u64, hasher: blake3::Hasher::new() };
-    parts.hasher.update(bytemuck::bytes_of(&Header { checksum: [0; 32], ..header }));
-    let vertices: Vec<Vertex> = parts.next(header.vertices).map_err(unreadable)?;
-    let triangles: Vec<Triangle> = parts.next(header.triangles).map_err(unreadable)?;
-    let materials: Vec<Material> = parts.next(header.materials).map_err(unreadable)?;
-    let lights: Vec<Light> = parts.next(header.lights).map_err(unreadable)?;
-    let poses: Vec<RawPose> = parts.next(header.poses).map_err(unreadable)?;
-    let text: Vec<u8> = parts.next(header.text).map_err(unreadable)?;
-    if *parts.hasher.finalize().as_bytes() != header.checksum {
+    let checksum = Checksum::new(bytemuck::bytes_of(&Header { checksum: [0; 16], ..header }));
+    let mut parts = Parts { path, at: size_of::<Header>() as u64, checksum, extent: Extent::EMPTY };
+    let vertices: Vec<Vertex> = parts.next(header.vertices, Extent::of_vertices).map_err(unreadable)?;
+    let triangles: Vec<Triangle> = parts.next(header.triangles, Extent::of_triangles).map_err(unreadable)?;
+    let materials: Vec<Material> = parts.next(header.materials, |_| Extent::EMPTY).map_err(unreadable)?;
+    let lights: Vec<Light> = parts.next(header.lights, |_| Extent::EMPTY).map_err(unreadable)?;
+    let poses: Vec<RawPose> = parts.next(header.poses, |_| Extent::EMPTY).map_err(unreadable)?;
+    let text: Vec<u8> = parts.next(header.text, |_| Extent::EMPTY).map_err(unreadable)?;
+    if parts.checksum.finish() != header.checksum {
         return Err(fault("the cache is corrupt: its checksum is wrong", again));
     }
     let texts: Texts =
@@ -244,7 +232,12 @@ pub fn read(path: &Path, _: &Options) -> Result<Scene> {
     check_source(path, &texts.source, &header, &metadata)?;
     let field_of_view = header.field_of_view;
     let frames: Vec<Pose> = poses.iter().map(pose).collect();
-    Ok(Scene {
+    let sound = |pose: &Pose| pose.time.is_finite() && pose.position.is_finite() && pose.direction.is_normalized();
+    let camera_works = field_of_view > 0.0 && field_of_view < 180.0 && frames.iter().all(sound);
+    if !(frames.is_empty() || camera_works) {
+        return Err(fault("the cache is corrupt: its camera is none", again));
+    }
+    let mut scene = Scene {
         name: texts.name,
         vertices,
         triangles,
@@ -255,7 +248,9 @@ pub fn read(path: &Path, _: &Options) -> Result<Scene> {
         camera: (!frames.is_empty()).then_some(SceneCamera { field_of_view, frames }),
         degenerate_triangles: header.degenerate as usize,
         warnings: texts.warnings,
-    })
+    };
+    scene.complete(parts.extent).map_err(|(problem, mend)| fault(&problem, mend))?;
+    Ok(scene)
 }
 
 /// Refuses a cache beside which a source lies that is no longer the one it was made from.
@@ -271,75 +266,4 @@ fn check_source(path: &Path, name: &str, header: &Header, metadata: &std::fs::Me
     }
     let problem = format!("the cache is stale: {} beside it has changed", beside.display());
     Err(Error::file(path, None, problem, "make it again with `rtbench scenes convert`"))
-}
-
-impl Header {
-    /// Bytes of the whole file; `None` if a number is beyond what a scene may have.
-    fn total(&self) -> Option<u64> {
-        let limit = MAX_ELEMENTS as u64;
-        let parts = [
-            (self.vertices, size_of::<Vertex>(), limit),
-            (self.triangles, size_of::<Triangle>(), limit),
-            (self.materials, size_of::<Material>(), limit),
-            (self.lights, size_of::<Light>(), limit),
-            (self.poses, size_of::<RawPose>(), limit),
-            (self.text, 1, MAX_TEXT),
-        ];
-        let fits = parts.iter().all(|(count, _, limit)| count <= limit);
-        let bytes = |(count, size, _): &(u64, usize, u64)| count * *size as u64;
-        fits.then(|| size_of::<Header>() as u64 + parts.iter().map(bytes).sum::<u64>())
-    }
-}
-
-/// Bytes that are read and hashed at once.
-const PIECE: usize = 1 << 20;
-
-/// Reads the parts one behind the other, and hashes them.
-struct Parts<'a> {
-    path: &'a Path,
-    /// Where the next part begins.
-    at: u64,
-    hasher: blake3::Hasher,
-}
-
-impl Parts<'_> {
-    /// The next `count` elements, straight into their memory. Pieces are read and hashed by all threads: each while it is
-    /// in its processor's cache, and each by a handle of its own, since a handle has one position.
-    fn next<T: Pod + Send>(&mut self, count: u64) -> std::io::Result<Vec<T>> {
-        let mut elements: Vec<T> = bytemuck::zeroed_vec(count as usize);
-        let bytes: &mut [u8] = bytemuck::cast_slice_mut(&mut elements);
-        let (start, length) = (self.at, bytes.len() as u64);
-        let read = |(i, piece): (usize, &mut [u8])| {
-            let mut file = File::open(self.path)?;
-            file.seek(SeekFrom::Start(start + (i * PIECE) as u64))?;
-            file.read_exact(piece)?;
-            Ok(blake3::hash(piece))
-        };
-        let hashes: std::io::Result<Vec<blake3::Hash>> = bytes.par_chunks_mut(PIECE).enumerate().map(read).collect();
-        hashes?.iter().for_each(|hash| add(&mut self.hasher, hash));
-        self.at += length;
-        Ok(elements)
-    }
-}
-
-/// The checksum is a hash of the pieces' hashes.
-fn add(hasher: &mut blake3::Hasher, piece: &blake3::Hash) {
-    hasher.update(piece.as_bytes());
-}
-
-fn readers() -> [u8; 16] {
-    let mut text = [0; 16];
-    let hash = READERS.as_bytes();
-    text[..hash.len().min(16)].copy_from_slice(&hash[..hash.len().min(16)]);
-    text
-}
-
-fn raw_pose(pose: &Pose) -> RawPose {
-    let [p, d, u] = [pose.position, pose.direction, pose.up].map(Vec3::as_dvec3);
-    [pose.time, p.x, p.y, p.z, d.x, d.y, d.z, u.x, u.y, u.z]
-}
-
-fn pose(raw: &RawPose) -> Pose {
-    let vector = |i: usize| Vec3::new(raw[i] as f32, raw[i + 1] as f32, raw[i + 2] as f32);
-    Pose { time: raw[0], position: vector(1), direction: vector(4), up: vector(7) }
 }

@@ -1,0 +1,4 @@
+//! The reader of `.mgf`.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| rtbench_fuzz::scene("mgf", bytes));

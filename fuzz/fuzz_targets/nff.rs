@@ -1,0 +1,4 @@
+//! The reader of `.nff`.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| rtbench_fuzz::scene("nff", bytes));

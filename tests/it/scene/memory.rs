@@ -1,0 +1,148 @@
+//! Memory while loading: at most four times the scene that comes out of it, and the file. Held for the largest real files
+//! and for files of every format that are made here.
+
+use super::gltf::glb;
+use super::{Files, real_scenes};
+use rtbench::scene::cache::{self, Source};
+use rtbench::scene::{self, Light, Material, Pose, Scene, Triangle};
+use serde_json::json;
+use std::fmt::Write;
+use std::path::Path;
+
+/// Bytes that any file may take: warnings, names, tables that begin with a few places.
+const BASE: u64 = 64 << 10;
+
+/// Bytes of what a scene holds.
+fn size(scene: &Scene) -> u64 {
+    let poses = scene.camera.as_ref().map_or(0, |camera| size_of_val(camera.frames.as_slice()));
+    let [vertices, triangles] = [size_of_val(scene.vertices.as_slice()), size_of_val(scene.triangles.as_slice())];
+    let [materials, lights] = [scene.materials.len() * size_of::<Material>(), scene.lights.len() * size_of::<Light>()];
+    const { assert!(size_of::<Triangle>() == 16 && size_of::<Pose>() <= 64) };
+    (vertices + triangles + materials + lights + poses) as u64
+}
+
+/// Files that do not keep to four times their scene, and what they do keep to. The classroom is a small scene in which most
+/// vertices have a name of their own: names and points in double precision take more than what becomes of them.
+const EXCEPTIONS: [(&str, u64); 1] = [("classroom.mgf", 6)];
+
+/// Four times the scene, the file, and a little.
+fn limit(name: &str, scene: &Scene, file: u64) -> u64 {
+    let times = EXCEPTIONS.iter().find(|(exception, _)| *exception == name).map_or(4, |(_, times)| *times);
+    times * size(scene) + file + BASE
+}
+
+/// Loads a file and says what is wrong if that took too much at any moment. `bytes` is the size of all that is read.
+fn too_much(what: &Path, bytes: u64) -> Option<String> {
+    let mut scene = None;
+    // Readers allocate on the thread that calls them, which is the one that is counted
+    let counted = allocation_counter::measure(|| scene = Some(scene::load(what.to_str().unwrap())));
+    let scene = scene.unwrap().unwrap_or_else(|error| panic!("{error}"));
+    let multiple = (counted.bytes_max.saturating_sub(bytes)) as f64 / size(&scene) as f64;
+    let name = what.file_name().unwrap().to_string_lossy();
+    let line = format!("{name}: {} KiB at once, {multiple:.2} times the scene and the file", counted.bytes_max >> 10);
+    eprintln!("{line}");
+    (counted.bytes_max > limit(&name, &scene, bytes)).then_some(line)
+}
+
+fn hold(files: &[(std::path::PathBuf, u64)]) {
+    let wrong: Vec<String> = files.iter().filter_map(|(path, bytes)| too_much(path, *bytes)).collect();
+    assert!(wrong.is_empty(), "more than allowed beside the file:\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn real_files_take_four_times_their_scene_at_most() {
+    let Some(folder) = real_scenes("real_files_take_four_times_their_scene_at_most") else { return };
+    let whole_folder = |path: &Path| -> u64 {
+        let entries = std::fs::read_dir(path.parent().unwrap()).unwrap();
+        entries.map(|entry| entry.unwrap().metadata().unwrap().len()).sum()
+    };
+    let alone = [
+        "bunny/bun_zipper.ply",
+        "dragon/dragon_vrip.ply",
+        "sponza/sponza.obj",
+        "conference/obj/arm_mat.obj",
+        "mgf/graz.mgf",
+        "mgf/classroom.mgf",
+        "mgf/soda.mgf",
+        "bart/museum/animart6-derived.aff",
+    ];
+    let mut files: Vec<_> =
+        alone.iter().map(|name| folder.join(name)).map(|p| (p.clone(), p.metadata().unwrap().len())).collect();
+    for name in ["bart/museum/museum6-derived.aff", "bart/robots/Robot.aff"] {
+        let path = folder.join(name);
+        files.push((path.clone(), whole_folder(&path)));
+    }
+    hold(&files);
+}
+
+/// The same mesh in every format.
+#[test]
+fn built_files_take_four_times_their_scene_at_most() {
+    let scene = scene::load("hall:triangles=30000").unwrap();
+    let points: Vec<[f32; 3]> = scene.vertices.iter().map(|v| v.position.to_array()).collect();
+    let corners: Vec<[u32; 3]> = scene.triangles.iter().map(|t| t.vertices).collect();
+    let files = Files::new(&[]);
+    let mut written = Vec::new();
+    let mut write = |name: &str, bytes: &[u8]| {
+        files.write(name, bytes);
+        written.push((files.path(name), bytes.len() as u64));
+    };
+    let (n, m) = (points.len(), corners.len());
+    let mut ply = format!(
+        "ply\nformat ascii 1.0\nelement vertex {n}\nproperty float x\nproperty float y\nproperty float z\n\
+        element face {m}\nproperty list uchar int vertex_indices\nend_header\n"
+    );
+    let (mut obj, mut mgf, mut nff) = (String::new(), String::new(), "f 1 1 1 1 0 0 0 1\n".to_owned());
+    let mut aff = format!("{nff}m\nvertices {n}\n");
+    for (i, [x, y, z]) in points.iter().enumerate() {
+        writeln!(ply, "{x} {y} {z}").unwrap();
+        writeln!(obj, "v {x} {y} {z}").unwrap();
+        writeln!(mgf, "v v{i} =\n\tp {x} {y} {z}").unwrap();
+        writeln!(aff, "{x} {y} {z}").unwrap();
+    }
+    writeln!(aff, "triangles {m}").unwrap();
+    for [a, b, c] in &corners {
+        writeln!(ply, "3 {a} {b} {c}").unwrap();
+        writeln!(obj, "f {} {} {}", a + 1, b + 1, c + 1).unwrap();
+        writeln!(mgf, "f v{a} v{b} v{c}").unwrap();
+        writeln!(aff, "{a} {b} {c}").unwrap();
+        writeln!(nff, "p 3").unwrap();
+        for corner in [a, b, c] {
+            let [x, y, z] = points[*corner as usize];
+            writeln!(nff, "{x} {y} {z}").unwrap();
+        }
+    }
+    let positions: Vec<u8> = points.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
+    let indices: Vec<u8> = corners.iter().flatten().flat_map(|i| i.to_le_bytes()).collect();
+    let buffer = [positions.as_slice(), &indices].concat();
+    let mut document = json!({
+        "asset": { "version": "2.0" },
+        "buffers": [{ "byteLength": buffer.len() }],
+        "bufferViews": [
+            { "buffer": 0, "byteLength": positions.len() },
+            { "buffer": 0, "byteOffset": positions.len(), "byteLength": indices.len() },
+        ],
+        "accessors": [
+            { "bufferView": 0, "componentType": 5126, "count": n, "type": "VEC3", "min": [-1e9, -1e9, -1e9], "max": [1e9, 1e9, 1e9] },
+            { "bufferView": 1, "componentType": 5125, "count": 3 * m, "type": "SCALAR" },
+        ],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1 }] }],
+        "nodes": [{ "mesh": 0 }],
+    });
+    write("built.ply", ply.as_bytes());
+    write("built.obj", obj.as_bytes());
+    write("built.mgf", mgf.as_bytes());
+    write("built.aff", aff.as_bytes());
+    write("built.nff", nff.as_bytes());
+    write("built.glb", &glb(&document, &buffer));
+    document["buffers"][0]["uri"] = "built.bin".into();
+    let text = document.to_string();
+    files.write("built.bin", &buffer);
+    files.write("built.gltf", text.as_bytes());
+    written.push((files.path("built.gltf"), (text.len() + buffer.len()) as u64));
+    cache::write(&scene, &Source::default(), &files.path("built.rtb")).unwrap();
+    // Nothing of a cache's file is kept: it is read into its place
+    written.push((files.path("built.rtb"), 0));
+    hold(&written);
+    assert!(limit("a.ply", &scene, 7) == 4 * size(&scene) + 7 + BASE && size(&scene) > 600_000);
+}

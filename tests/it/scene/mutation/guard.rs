@@ -1,0 +1,70 @@
+//! What a variant may take: memory, and no more than a moment of time.
+
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+/// Bytes that reading may take beside sixteen times the file's.
+const BASE: u64 = 64 << 20;
+
+/// What counts as a hang. Two seconds are the limit of a machine that does nothing else; nothing that ends takes ten times
+/// as long, however busy the machine is.
+const HANG: Duration = Duration::from_secs(20);
+
+/// Fails if so many bytes of files may not lead to such a peak of memory (of this thread: readers allocate nowhere else).
+pub fn hold_memory(what: &str, peak: u64, file_bytes: usize) {
+    let limit = 16 * file_bytes as u64 + BASE;
+    assert!(peak <= limit, "{what}: {peak} bytes allocated at once, {limit} are allowed for a file of {file_bytes}");
+}
+
+/// Ends the whole test program if one piece of work takes for ever: a thread that hangs cannot be stopped otherwise.
+pub struct Watchdog {
+    running: Arc<Mutex<(Instant, String)>>,
+    done: Arc<AtomicBool>,
+}
+
+impl Watchdog {
+    /// Begins to watch.
+    pub fn new() -> Watchdog {
+        let running = Arc::new(Mutex::new((Instant::now(), String::new())));
+        let done = Arc::new(AtomicBool::new(false));
+        let (watched, ended) = (Arc::clone(&running), Arc::clone(&done));
+        std::thread::spawn(move || {
+            while !ended.load(Relaxed) {
+                std::thread::sleep(Duration::from_millis(200));
+                let (since, what) = watched.lock().unwrap().clone();
+                if is_hang(since.elapsed()) && !ended.load(Relaxed) {
+                    eprintln!("{what}: hangs, more than {} s", HANG.as_secs());
+                    std::process::exit(101);
+                }
+            }
+        });
+        Watchdog { running, done }
+    }
+
+    /// Something else begins; `what` is what the user is told if it hangs.
+    pub fn begin(&self, what: &str) {
+        *self.running.lock().unwrap() = (Instant::now(), what.to_owned());
+    }
+}
+
+fn is_hang(time: Duration) -> bool {
+    time > HANG
+}
+
+impl Drop for Watchdog {
+    fn drop(&mut self) {
+        self.done.store(true, Relaxed);
+    }
+}
+
+#[test]
+fn the_limits_can_be_overstepped() {
+    hold_memory("as allowed", 16 * 100 + (64 << 20), 100);
+    let caught = std::panic::catch_unwind(|| hold_memory("too much", 16 * 100 + (64 << 20) + 1, 100));
+    assert!(caught.is_err());
+    assert!(is_hang(Duration::from_secs(21)) && !is_hang(Duration::from_secs(19)));
+    // What is counted is the peak, freed or not.
+    let counted = allocation_counter::measure(|| drop(std::hint::black_box(vec![1u8; 1 << 20])));
+    assert!(counted.bytes_max >= 1 << 20 && counted.bytes_current == 0, "{counted:?}");
+}
