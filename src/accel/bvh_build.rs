@@ -13,7 +13,7 @@ use rayon::prelude::*;
 /// What can be set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Config {
-    /// Bins per axis, 2 to [`super::bvh_bins::MAX_BINS`].
+    /// Bins per axis, 2 to 32.
     pub bins: usize,
     /// A node with at most this many triangles is a leaf, 1 to [`super::bvh::MAX_LEAF`].
     pub max_leaf: usize,

@@ -250,10 +250,7 @@ impl Plan {
     /// # Errors
     /// [`Error::Input`] of the path.
     pub fn path(&self, scene: &Scene, config: Config, frames: Option<usize>) -> Result<Path> {
-        let path = match &self.camera_path {
-            Some(name) => CameraPath::load(name)?,
-            None => CameraPath::for_scene(scene, config),
-        };
+        let path = CameraPath::named_or_fitting(self.camera_path.as_deref(), scene, config)?;
         let record = PathRecord { name: path.name.clone(), hash: path.content_hash() };
         Ok(Path { record, views: path.views(scene, frames)? })
     }

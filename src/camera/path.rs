@@ -105,6 +105,14 @@ impl CameraPath {
         }
     }
 
+    /// The path that the user names, or that fits scene and configuration.
+    ///
+    /// # Errors
+    /// Those of [`CameraPath::load`].
+    pub fn named_or_fitting(name: Option<&str>, scene: &Scene, config: Config) -> Result<CameraPath> {
+        name.map_or_else(|| Ok(CameraPath::for_scene(scene, config)), CameraPath::load)
+    }
+
     /// The path that fits scene and ray configuration if the user names none: the camera that the scene's file brings;
     /// the scene's own path; otherwise the thesis's method for single objects (SPEC section 8), the camera's turn for P
     /// and the light's turn where there are shadows.

@@ -55,10 +55,7 @@ pub fn run(command: &Command) -> Result<()> {
         }
         Command::Export { scene, library, camera_path, frames, out } => {
             let scene = library.load(scene)?;
-            let path = match camera_path {
-                Some(name) => CameraPath::load(name)?,
-                None => CameraPath::for_scene(&scene, Config::P),
-            };
+            let path = CameraPath::named_or_fitting(camera_path.as_deref(), &scene, Config::P)?;
             let recorded = path.poses(&scene, *frames)?;
             let text = match out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv")) {
                 true => camera::to_csv(&recorded),

@@ -97,10 +97,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let size = plan::parse_size(&arguments.resolution)?;
     arguments.device.check()?;
     let scene = arguments.library.load(&arguments.scene)?;
-    let path = match &arguments.camera_path {
-        Some(name) => CameraPath::load(name)?,
-        None => CameraPath::for_scene(&scene, config),
-    };
+    let path = CameraPath::named_or_fitting(arguments.camera_path.as_deref(), &scene, config)?;
     let views = path.views(&scene, None)?;
     let view = views.get(arguments.frame).ok_or_else(|| {
         let problem = format!("the path {} has no frame {}", path.name, arguments.frame);

@@ -30,7 +30,7 @@ pub fn load_in(what: &str, folder: Option<&Path>) -> Result<Scene> {
     }
     let path = Path::new(name);
     let bare = what.split(':').next().unwrap_or(what);
-    let built_in = procedural::list().iter().any(|info| info.name == bare);
+    let built_in = is_built_in(what);
     if !built_in && (reader_of(path).is_some() || name.contains(['/', std::path::MAIN_SEPARATOR]) || path.exists()) {
         let options = Options::parse(what, settings)?;
         let mut scene = read(name, &options)?;
@@ -50,13 +50,17 @@ pub fn load_in(what: &str, folder: Option<&Path>) -> Result<Scene> {
     Ok(scene)
 }
 
+/// True for the name of a built-in scene, with parameters or without.
+fn is_built_in(what: &str) -> bool {
+    let bare = what.split(':').next().unwrap_or(what);
+    procedural::list().iter().any(|info| info.name == bare)
+}
+
 /// The same scene with its moving geometry frozen at a time: `time=...` among the options behind its name. A built-in
 /// scene, and a scene for which a time is given already, stay as they are.
 pub fn at_time(what: &str, time: f64) -> String {
     let (name, settings) = split_settings(what);
-    let bare = name.split(':').next().unwrap_or(name);
-    let is_built_in = procedural::list().iter().any(|info| info.name == bare);
-    if is_built_in || settings.split(',').any(|setting| setting.starts_with("time=")) {
+    if is_built_in(what) || settings.split(',').any(|setting| setting.starts_with("time=")) {
         return what.to_owned();
     }
     let comma = if settings.is_empty() { "" } else { "," };
@@ -69,8 +73,7 @@ pub(super) fn file_behind(what: &str, folder: Option<&Path>) -> Result<Option<St
     if let Some(entry) = catalogue::find(name) {
         return Ok(Some(entry.path_in(folder)?.to_string_lossy().into_owned()));
     }
-    let built_in = procedural::list().iter().any(|info| info.name == name.split(':').next().unwrap_or(name));
-    Ok((!built_in).then(|| name.to_owned()))
+    Ok((!is_built_in(what)).then(|| name.to_owned()))
 }
 
 /// A scene of the catalogue: the file as its entry says, and what the user sets on top.

@@ -2,6 +2,7 @@
 
 mod claims; // every claim in every verdict, also where it is false
 mod command; // the program: broken and empty runs, files, splicing
+mod committed; // the runs in git, and what the README shows of them
 mod counts; // grid steps and tests along BART's cameras
 mod figures; // XML, what is drawn and what is not
 mod published; // every row parses; the memory model against all 27 sizes

@@ -1,6 +1,6 @@
 //! Built-in scenes: the same triangles on every machine, of any size, for every character that a structure may meet.
 //!
-//! A scene is one file with an `INFO` in it and one line in [`SCENES`]. All have the parameter `triangles`, which they
+//! A scene is one file with an `INFO` in it and one line in `SCENES`. All have the parameter `triangles`, which they
 //! meet within a few percent. Lengths are metres, y points up.
 
 mod hall;
