@@ -190,6 +190,12 @@ pub struct RegisterLimit {
     pub speedup: Option<i32>,
 }
 
+impl Counts {
+    fn is(&self, scene: &SceneKey, structure: &str, variant: &Variant, ray: usize) -> bool {
+        self.ray == ray && self.structure == structure && self.scene == *scene && self.variant == *variant
+    }
+}
+
 impl Data {
     /// The frame times of a configuration with a square image of `side` pixels.
     pub fn frame(
@@ -225,11 +231,22 @@ impl Data {
         self.counts_of(scene, structure, &Variant::of_thesis(scene.thesis(), structure), ray)
     }
 
-    /// Counts of a ray type.
+    /// Counts of a ray type at the largest resolution.
     pub fn counts_of(&self, scene: &SceneKey, structure: &str, variant: &Variant, ray: usize) -> Option<&Counts> {
-        let found =
-            |c: &&Counts| c.ray == ray && c.structure == structure && c.scene == *scene && c.variant == *variant;
-        self.counts.iter().find(found)
+        let wanted = |c: &&Counts| c.is(scene, structure, variant, ray);
+        self.counts.iter().filter(wanted).max_by_key(|c| c.resolution)
+    }
+
+    /// Counts of a ray type at one resolution.
+    pub fn counts_at(
+        &self,
+        scene: &SceneKey,
+        structure: &str,
+        variant: &Variant,
+        ray: usize,
+        resolution: u32,
+    ) -> Option<&Counts> {
+        self.counts.iter().find(|c| c.resolution == resolution && c.is(scene, structure, variant, ray))
     }
 
     /// A built structure, with the thesis's options.

@@ -197,8 +197,7 @@ fn add_configuration(data: &mut Data, device: usize, info: &DeviceInfo, record: 
     }
 }
 
-/// A configuration stands for the ray type that it adds (SPEC section 6); of several sizes the largest counts, of the
-/// same size the last. Counts do not depend on the device: that they agree has been verified.
+/// A configuration stands for the ray type that it adds (SPEC section 6); of the same size the last counts. Counts do not depend on the device: that they agree has been verified.
 fn add_counts(data: &mut Data, frame: &Frame, record: &ConfigurationRecord) {
     let ray = match record.config {
         Config::P => 0,
@@ -225,11 +224,11 @@ fn add_counts(data: &mut Data, frame: &Frame, record: &ConfigurationRecord) {
         restarts: (frame.structure == "kdtree").then(|| per_ray(|s| s.restarts)),
     };
     let same = |c: &&mut Counts| {
-        (&c.scene, &c.structure, &c.variant, c.ray) == (&counts.scene, &counts.structure, &counts.variant, ray)
+        (&c.scene, &c.structure, &c.variant) == (&counts.scene, &counts.structure, &counts.variant)
+            && (c.ray, c.resolution) == (ray, counts.resolution)
     };
     match data.counts.iter_mut().find(same) {
-        Some(known) if known.resolution <= counts.resolution => *known = counts,
-        Some(_) => {}
+        Some(known) => *known = counts,
         None => data.counts.push(counts),
     }
 }

@@ -51,13 +51,13 @@ fn beats_by_counts(data: &Data, structure: &str, ray: usize, (key, value): (&str
         if !other.variant.is(&base, key, value) {
             continue;
         }
-        let plain = data.counts_of(&other.scene, structure, &base, ray).filter(|c| c.resolution == other.resolution);
-        let Some(plain) = plain else { continue };
+        let Some(plain) = data.counts_at(&other.scene, structure, &base, ray, other.resolution) else { continue };
         let (a, b) = (work(plain), work(other));
         let numbers = format!(
-            "steps + tests per {} ray: default {a:.2}, {key}={value} {b:.2} ({:.2} times)",
+            "{side}x{side}, steps + tests per {} ray: default {a:.2}, {key}={value} {b:.2} ({:.2} times)",
             RAY_TYPES[ray],
-            b / a
+            b / a,
+            side = other.resolution
         );
         let outcome = less_by(Uncertain::exact(a), Uncertain::exact(b), factor);
         cases.push(Case::new(&other.scene, format!("{structure} {} rays", RAY_TYPES[ray]), outcome, numbers));
@@ -147,7 +147,8 @@ fn by_time(data: &Data, device: usize, key: &SceneKey) -> Option<[(Uncertain, u3
 fn by_counts(data: &Data, key: &SceneKey) -> Option<[(Uncertain, u32); 2]> {
     let points: Vec<Point> =
         (0..data.devices.len()).flat_map(|device| grid_sweep(data, device, key, Config::P)).collect();
-    rule_and_best(&points, |p| data.counts_of(key, "grid", &p.frame.variant, 0).map(|c| Uncertain::exact(work(c))))
+    let counts = |p: &Point| data.counts_at(key, "grid", &p.frame.variant, 0, p.frame.width);
+    rule_and_best(&points, |p| Some(Uncertain::exact(work(counts(p)?))))
 }
 
 /// Not slower than the best by more than [`NEAR`].

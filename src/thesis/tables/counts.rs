@@ -37,10 +37,9 @@ pub fn counts(context: &Context, id: &str, structure: &str) -> Table {
         table.notes.push(rays.into());
         return table;
     }
-    table.notes.push(format!(
-        "{rays} Counted at the largest square image that was measured: {}.",
-        sizes(context.data, structure)
-    ));
+    table
+        .notes
+        .push(format!("{rays} Counted at the largest square image that was measured: {}.", sizes(context, structure)));
     if structure == "grid" {
         table.notes.push("A step is a cell.".into());
         return table;
@@ -56,8 +55,10 @@ pub fn counts(context: &Context, id: &str, structure: &str) -> Table {
 }
 
 /// Sides of the images that counts come from.
-fn sizes(data: &Data, structure: &str) -> String {
-    let mut sides: Vec<u32> = data.counts.iter().filter(|c| c.structure == structure).map(|c| c.resolution).collect();
+fn sizes(context: &Context, structure: &str) -> String {
+    let pairs = context.scenes().into_iter().flat_map(|key| (0..3).map(move |ray| (key.clone(), ray)));
+    let side = |(key, ray): (SceneKey, usize)| Some(context.data.thesis_counts(&key, structure, ray)?.resolution);
+    let mut sides: Vec<u32> = pairs.filter_map(side).collect();
     sides.sort_unstable();
     sides.dedup();
     if sides.is_empty() {
