@@ -86,26 +86,22 @@ fn throughput(extension: &str, path: &Path) {
     println!("{extension:<12} {megabytes:>9.4} {:>8.0} ({low:.0} to {high:.0})  {}", median(&rates), path.display());
 }
 
-/// Loads each in turns, in an order that turns round every other time, and compares with the first.
+/// Loads each in turns and compares with the first.
 fn interleaved(name: &str, contestants: &[(&str, &Path)], rounds: usize) {
-    let mut times = vec![Vec::new(); contestants.len()];
-    for round in 0..rounds {
-        let mut order: Vec<usize> = (0..contestants.len()).collect();
-        if round % 2 == 1 {
-            order.reverse();
-        }
-        for i in order {
-            let what = contestants[i].1.to_str().expect("a printable path");
+    let timed = |path: &Path| {
+        let what = path.to_str().expect("a printable path").to_owned();
+        move || {
             let start = Instant::now();
-            black_box(load(what).expect("loads"));
-            times[i].push(start.elapsed().as_secs_f64() * 1e3);
+            black_box(load(&what).expect("loads"));
+            start.elapsed().as_secs_f64() * 1e3
         }
-    }
+    };
+    let mut loads: Vec<_> = contestants.iter().map(|(_, path)| timed(path)).collect();
+    let mut loads: Vec<&mut dyn FnMut() -> f64> = loads.iter_mut().map(|load| load as _).collect();
+    let times = common::interleaved(&mut loads, rounds);
     println!("{name}");
-    for (i, (contestant, _)) in contestants.iter().enumerate() {
-        let ratios: Vec<f64> = times[0].iter().zip(&times[i]).map(|(first, this)| first / this).collect();
-        let (low, high) = sign_test_interval(&ratios);
-        let ratio = format!("{:.1} times as fast ({low:.1} to {high:.1})", median(&ratios));
-        println!("    {contestant:<8} {:>8.2} ms  {ratio}", median(&times[i]));
+    for ((contestant, _), own) in contestants.iter().zip(&times) {
+        let (middle, low, high) = common::ratio(&times[0], own);
+        println!("    {contestant:<8} {:>8.2} ms  {middle:.1} times as fast ({low:.1} to {high:.1})", median(own));
     }
 }

@@ -4,12 +4,11 @@
 use super::configuration::{Context, Subject};
 use super::sweep::Event;
 use crate::accel::{Built, Selection};
-use crate::backend::{Backend, Config, Size};
+use crate::backend::{Backend, Config, Counters, Prepared, Size};
+use crate::camera::View;
 use crate::error::{Error, Result};
-use crate::results::{files, picture};
-
-/// Folder below the run's: `SCENE.png`, and `SCENE-steps.png` with the traversal steps of each pixel.
-pub const FOLDER: &str = "pictures";
+use crate::results::files;
+use crate::results::picture::{self, FOLDER, STEPS};
 
 /// The longer side of a picture, in pixels.
 const SIDE: u32 = 448;
@@ -37,11 +36,8 @@ pub fn take(context: &mut Context, subject: &Subject, backend: &dyn Backend, tre
     let Size { width, height } = size;
     let render = || -> Result<(Vec<u8>, Vec<u8>)> {
         let mut prepared = backend.prepare(subject.scene, &tree.structure, Selection::parse(STRUCTURE)?.method())?;
-        let image = prepared.image(*config, view, size)?.iter().flat_map(|pixel| pixel.rgba.to_le_bytes()).collect();
-        let mut steps: Vec<u32> = Vec::with_capacity(size.pixels());
-        prepared.counted(*config, view, size, &mut |_, pixels| {
-            steps.extend(pixels.iter().map(|p| p.counters.iter().map(|c| c.steps()).sum::<u32>()));
-        })?;
+        let image = image(&mut *prepared, *config, view, size)?;
+        let steps = per_pixel(&mut *prepared, *config, view, size, &|counters| counters.steps())?;
         Ok((image, picture::heat_map(&steps, picture::most_but_few(&steps))))
     };
     let (image, steps) = match render() {
@@ -56,7 +52,33 @@ pub fn take(context: &mut Context, subject: &Subject, backend: &dyn Backend, tre
     std::fs::create_dir_all(&folder).map_err(|source| Error::output(&folder, source))?;
     let name = files::slug(scene);
     picture::write_png(&folder.join(format!("{name}.png")), width, height, &image)?;
-    picture::write_png(&folder.join(format!("{name}-steps.png")), width, height, &steps)
+    picture::write_png(&folder.join(format!("{name}{STEPS}.png")), width, height, &steps)
+}
+
+/// One frame by the timed kernel, RGBA8.
+///
+/// # Errors
+/// The device's.
+pub fn image(prepared: &mut dyn Prepared, config: Config, view: &View, size: Size) -> Result<Vec<u8>> {
+    Ok(prepared.image(config, view, size)?.iter().flat_map(|pixel| pixel.rgba.to_le_bytes()).collect())
+}
+
+/// What each pixel's rays cost, all ray types together, by the counting kernel.
+///
+/// # Errors
+/// The device's.
+pub fn per_pixel(
+    prepared: &mut dyn Prepared,
+    config: Config,
+    view: &View,
+    size: Size,
+    cost: &dyn Fn(&Counters) -> u32,
+) -> Result<Vec<u32>> {
+    let mut values = Vec::with_capacity(size.pixels());
+    prepared.counted(config, view, size, &mut |_, pixels| {
+        values.extend(pixels.iter().map(|p| p.counters.iter().map(cost).sum::<u32>()));
+    })?;
+    Ok(values)
 }
 
 /// The more kinds of rays, the richer.

@@ -188,11 +188,12 @@ impl Sweep<'_, '_> {
         self.pictures(&subject, &reference)
     }
 
-    /// Take a scene's pictures. A device that is lost over them is opened again for the first measurement.
+    /// Take a scene's pictures. They are not worth opening a lost device again; one that is lost over them is opened
+    /// again for the next scene.
     fn pictures(&mut self, subject: &Subject, tree: &Built) -> Result<()> {
-        let device = match self.device.take() {
-            Some(device) => device,
-            None => self.reopen()?,
+        let Some(device) = self.device.take() else {
+            self.say(Event::Note(format!("no pictures of {}: the device was lost", subject.record.name)));
+            return Ok(());
         };
         match pictures::take(&mut self.context, subject, device.backend.as_ref(), tree) {
             Err(Error::DeviceLost(message)) => {

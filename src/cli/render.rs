@@ -5,7 +5,7 @@ use super::library::LibraryArguments;
 use super::output;
 use crate::accel::Selection;
 use crate::backend::{Config, Counters, Prepared, Size};
-use crate::bench::plan;
+use crate::bench::{pictures, plan};
 use crate::camera::{CameraPath, View};
 use crate::error::{Error, Result};
 use crate::results::picture;
@@ -109,10 +109,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let built = selection.build(&scene, arguments.device.threads)?;
     let mut prepared = device.backend.prepare(&scene, &built.structure, selection.method())?;
     let rgba = match arguments.heatmap {
-        None => {
-            let pixels = prepared.image(config, view, size)?;
-            pixels.iter().flat_map(|pixel| pixel.rgba.to_le_bytes()).collect()
-        }
+        None => pictures::image(&mut *prepared, config, view, size)?,
         Some(heatmap) => paint(heatmap, arguments.scale_max, &mut *prepared, config, view, size)?,
     };
     picture::write_png(&arguments.out, size.width, size.height, &rgba)?;
@@ -138,14 +135,11 @@ fn paint(
     view: &View,
     size: Size,
 ) -> Result<Vec<u8>> {
-    let mut values: Vec<u32> = Vec::with_capacity(size.pixels());
-    prepared.counted(config, view, size, &mut |_, pixels| {
-        values.extend(pixels.iter().map(|p| p.counters.iter().map(|c| heatmap.of(c)).sum::<u32>()));
-    })?;
+    let values = pictures::per_pixel(prepared, config, view, size, &|counters| heatmap.of(counters))?;
     let min = values.iter().copied().min().unwrap_or(0);
     let max = values.iter().copied().max().unwrap_or(0);
     let mean = values.iter().map(|&v| f64::from(v)).sum::<f64>() / values.len().max(1) as f64;
-    let top = scale_max.unwrap_or(max);
+    let top = scale_max.unwrap_or(max).max(1);
     output::print(&format!(
         "{} per pixel: min {min}, mean {mean:.2}, max {max}; colours from dark blue (0) by way of red to yellow ({top})\n",
         heatmap.name(),

@@ -5,6 +5,11 @@ use crate::error::{Error, Result};
 use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
 use std::path::Path;
 
+/// Where a run's folder has the pictures of its scenes: `SCENE.png`, and `SCENE` + [`STEPS`] + `.png` with each pixel's steps.
+pub const FOLDER: &str = "pictures";
+/// Behind the scene's name in the heat map's.
+pub const STEPS: &str = "-steps";
+
 /// Writes RGBA8 rows from the top as a PNG.
 ///
 /// # Errors

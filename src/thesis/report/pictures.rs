@@ -2,15 +2,12 @@
 
 use super::html::escape;
 use crate::error::{Error, Result};
+use crate::results::picture::{FOLDER, STEPS};
 use crate::thesis::runs::RecordedRun;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use std::collections::BTreeMap;
 use std::path::Path;
-
-/// Where a run's folder has them: `SCENE.png`, and `SCENE-steps.png` for the heat map.
-const FOLDER: &str = "pictures";
-const STEPS: &str = "-steps";
 
 /// What every PNG begins with.
 const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
