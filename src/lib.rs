@@ -5,6 +5,7 @@
 //! | step | what it is |
 //! |---|---|
 //! | [`error`] | the one error that reaches a user: file, line, problem, mend |
+//! | [`threads`] | pools of threads to measure with |
 //! | [`math`] | boxes, rays, triangles and the two tests; the twin of `kernels/lib/geom.wgsl` |
 //! | [`scene`] | mesh, materials, lights; one file per format; procedural scenes |
 //! | [`config`] | ray configurations P, PS and PSR |
@@ -33,5 +34,6 @@ pub mod math;
 pub mod results;
 pub mod scene;
 pub mod thesis;
+pub mod threads;
 
 pub use error::{Error, Result};

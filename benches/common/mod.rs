@@ -39,7 +39,7 @@ pub fn scan(triangles: usize) -> Scene {
 
 /// A pool of so many threads; 0: as many as there are.
 pub fn pool(threads: usize) -> rayon::ThreadPool {
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads")
+    rtbench::threads::pool(threads).expect("threads")
 }
 
 /// Input of the other builders, made once and outside of all measurements (unlike ours, which begins at the scene).

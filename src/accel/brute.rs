@@ -6,6 +6,6 @@ use crate::scene::Scene;
 
 /// Lists all triangles that can be hit, in scene order.
 pub fn build(scene: &Scene) -> Result<Brute> {
-    let prims = prims::prims(scene)?;
-    Ok(Brute { bounds: prims::bounds(&prims), records: prims::records(scene, &prims) })
+    let (prims, bounds) = prims::prims(scene)?;
+    Ok(Brute { bounds, records: prims::records(scene, &prims) })
 }

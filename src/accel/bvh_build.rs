@@ -28,7 +28,7 @@ impl Default for Config {
 
 /// Subtrees of at most this many triangles are built by one thread into one vector. A constant, so that the tree does
 /// not depend on the number of threads.
-const TASK: usize = 4096;
+const TASK: usize = 1024;
 
 /// Builds a BVH over all triangles that can be hit, on the threads of the current rayon pool.
 pub fn build(scene: &Scene, config: &Config) -> Result<Bvh> {
@@ -36,8 +36,7 @@ pub fn build(scene: &Scene, config: &Config) -> Result<Bvh> {
         let [a, b, c] = scene.corners(prim.triangle());
         Item { prim, centroid3: (a + b + c).extend(1.0) }
     };
-    let mut items = prims::gather(scene, Item::NONE, item, |item| &item.prim)?;
-    let bounds = prims::bounds_by(&items, |item| &item.prim);
+    let (mut items, bounds) = prims::gather(scene, Item::NONE, item, |item| &item.prim)?;
     if items.is_empty() {
         return Ok(Bvh { bounds, nodes: vec![BvhNode::NONE; 2], records: Vec::new(), depth: 0 });
     }
@@ -133,7 +132,7 @@ impl Builder {
         let bins = if items.len() <= 2 * bins { bins.div_ceil(2).max(2) } else { bins };
         let binning = Binning::new(&centroids, bins);
         let Some(split) = desk.splitter.find(items, &binning) else { return halve(items) };
-        let mid = desk.partitioner.run(items, |item| binning.of(item)[split.axis] <= split.bin);
+        let mid = desk.partitioner.shared(items, |item| binning.of(item)[split.axis] <= split.bin);
         debug_assert_eq!(mid, split.left_count);
         Sides { mid, left: split.left, right: split.right }
     }

@@ -1,7 +1,7 @@
 //! Dividing the triangles of a BVH node into two sides.
 
 use super::bvh_bins::{Item, Rows};
-use super::prims::CHUNK;
+use super::prims::{CHUNK, SHARED};
 use rayon::prelude::*;
 
 /// Two sides of a split: where the right one begins, and their boxes.
@@ -19,7 +19,7 @@ pub(super) fn centroid_bounds(items: &[Item]) -> Rows {
         items.iter().for_each(|item| rows.grow(item.centroid3, item.centroid3));
         rows
     };
-    if items.len() <= 4 * CHUNK {
+    if items.len() <= SHARED {
         return around(items);
     }
     let chunks: Vec<Rows> = items.par_chunks(CHUNK).map(around).collect();
@@ -45,12 +45,25 @@ impl Partitioner {
         Partitioner { scratch: [Item::NONE; 2 * BLOCK], misplaced: [[0; BLOCK]; 2] }
     }
 
+    /// Returns how many go left. Large nodes are halved, the halves partitioned side by side, and what then lies on the
+    /// wrong side of the border is exchanged.
+    pub fn shared(&mut self, items: &mut [Item], goes_left: impl Fn(&Item) -> bool + Copy + Sync) -> usize {
+        if items.len() <= SHARED {
+            return self.run(items, goes_left);
+        }
+        let (a, b) = items.split_at_mut(items.len() / 2);
+        let (a_left, b_left) = rayon::join(|| self.shared(a, goes_left), || Partitioner::new().shared(b, goes_left));
+        let exchanged = (a.len() - a_left).min(b_left);
+        a[a_left..a_left + exchanged].swap_with_slice(&mut b[b_left - exchanged..b_left]);
+        a_left + b_left
+    }
+
     /// Returns how many go left.
     ///
     /// After S. Edelkamp and A. Weiss: BlockQuicksort, 2016: collects the misplaced items of one block at either end,
     /// swaps them pairwise, and moves on from the block that has none left.
     #[inline(always)]
-    pub fn run(&mut self, items: &mut [Item], goes_left: impl Fn(&Item) -> bool) -> usize {
+    fn run(&mut self, items: &mut [Item], goes_left: impl Fn(&Item) -> bool) -> usize {
         let (mut from, mut to) = (0, items.len());
         // How many of the collected offsets have been used, and how many there are.
         let mut pending = [(0, 0); 2];

@@ -44,8 +44,7 @@ fn record_limit(triangles: usize) -> u64 {
 
 /// Builds a grid over all triangles that can be hit, on one thread.
 pub fn build(scene: &Scene, config: &Config) -> Result<Grid> {
-    let prims = prims::prims(scene)?;
-    let bounds = prims::bounds(&prims);
+    let (prims, bounds) = prims::prims(scene)?;
     if prims.is_empty() {
         let cells = vec![Cell::default()];
         return Ok(Grid { bounds, resolution: [1; 3], cell_size: 1.0, cells, records: Vec::new() });

@@ -228,8 +228,7 @@ impl KdNode {
 
 /// Builds a kd-tree over all triangles that can be hit, on the threads of the current rayon pool.
 pub fn build(scene: &Scene, config: &Config) -> Result<KdTree> {
-    let prims = prims::prims(scene)?;
-    let bounds = prims::bounds(&prims);
+    let (prims, bounds) = prims::prims(scene)?;
     let automatic = (8.0 + 1.3 * (prims.len().max(1) as f64).log2()).round() as u32;
     let max_depth = config.max_depth.unwrap_or(automatic).min(MAX_DEPTH);
     let never_split = (config.cost.traversal / config.cost.intersection) as usize;

@@ -41,6 +41,12 @@ pub(super) fn local(event: Event) -> usize {
     (event as u32 & 0x3fff_ffff) as usize
 }
 
+/// 1 where a triangle begins.
+#[inline(always)]
+pub(super) fn starts(event: Event) -> u32 {
+    (event as u32) >> 31
+}
+
 /// 1 where a triangle begins or lies, 0 where it ends.
 #[inline(always)]
 pub(super) fn begun(event: Event) -> u32 {
@@ -55,45 +61,83 @@ pub(super) fn begun(event: Event) -> u32 {
 /// constant), the cost is `p left + (s - p) right = s right + p (left - right)`, and `left - right` grows by one with
 /// every event. Most lists are so short that a mispredicted branch costs more than an event: there is none but the
 /// loop's.
+///
+/// `events` goes on behind the first `own`, by at least [`SPARE`]: four events are read at a time, and those that are not
+/// the list's own not regarded.
 #[inline(always)]
-pub(super) fn sweep(events: &[Event], areas: &Areas, count: usize, begun: u32) -> u64 {
-    let (mut right, mut difference) = (count as f32, -(begun as f32));
-    let mut cheapest = u64::MAX;
-    let (fours, rest) = events.as_chunks::<4>();
-    if !fours.is_empty() {
-        let (mut costs, mut numbers) = (Vec4::INFINITY, Vec4::ZERO);
-        for (number, four) in fours.iter().enumerate() {
-            let [a, b, c, d] = four.map(is_end);
-            let ended = Vec4::new(a, a + b, a + b + c, a + b + c + d);
-            let steps = Vec4::new(a, 1.0 + b, 2.0 + c, 3.0 + d);
-            let planes = Vec4::from_array(four.map(coordinate));
-            let cost = areas.costs(planes, Vec4::splat(right) - ended, Vec4::splat(difference) + steps);
-            let cheaper = cost.cmplt(costs);
-            costs = Vec4::select(cheaper, cost, costs);
-            // Bits ride along as floats; nothing is computed with them.
-            numbers = Vec4::select(cheaper, Vec4::splat(f32::from_bits(number as u32)), numbers);
-            right -= ended.w;
-            difference += 4.0;
-        }
-        for lane in 0..4 {
-            cheapest = cheapest.min(ranked(costs[lane], 4 * numbers[lane].to_bits() as usize + lane));
-        }
+pub(super) fn sweep(events: &[Event], own: usize, areas: &Areas, count: usize) -> u64 {
+    if own == 0 {
+        return u64::MAX;
     }
-    for (i, &e) in rest.iter().enumerate() {
-        let end = is_end(e);
-        right -= end;
-        let cost = areas.cost(coordinate(e), right, difference + end);
-        difference += 1.0;
-        cheapest = cheapest.min(ranked(cost, 4 * fours.len() + i));
+    let fours = &events.as_chunks::<4>().0[..own.div_ceil(4)];
+    let begun: u32 = fours
+        .iter()
+        .enumerate()
+        .map(|(i, four)| {
+            let foreign = (4 * i + 4).saturating_sub(own);
+            STARTS[starts_of(four) & 15 >> foreign]
+        })
+        .sum();
+    let (mut right, mut difference) = (Vec4::splat(count as f32), Vec4::splat(-(begun as f32)));
+    let (mut costs, mut numbers) = (Vec4::INFINITY, Vec4::ZERO);
+    let mut left_over = Vec4::splat(own as f32) - Vec4::new(0.0, 1.0, 2.0, 3.0);
+    for (number, four) in fours.iter().enumerate() {
+        let Ends { ended, steps } = ENDS[starts_of(four)];
+        let planes = Vec4::from_array(four.map(coordinate));
+        let cost = areas.costs(planes, right - ended, difference + steps);
+        let cheaper = cost.cmplt(costs) & left_over.cmpgt(Vec4::ZERO);
+        costs = Vec4::select(cheaper, cost, costs);
+        // Bits ride along as floats; nothing is computed with them.
+        numbers = Vec4::select(cheaper, Vec4::splat(f32::from_bits(number as u32)), numbers);
+        right -= Vec4::splat(ended.w);
+        difference += 4.0;
+        left_over -= 4.0;
     }
-    cheapest
+    let ranks = [0, 1, 2, 3].map(|lane| ranked(costs[lane], 4 * numbers[lane].to_bits() as usize + lane));
+    ranks[0].min(ranks[1]).min(ranks[2].min(ranks[3]))
 }
 
-/// 1 for an end, 0 for a start, by the start's bit alone.
+/// By so many events must a list that is swept be longer than its own.
+pub(super) const SPARE: usize = 3;
+
+/// Which of four events are starts (none is planar), as bits.
 #[inline(always)]
-fn is_end(event: Event) -> f32 {
-    f32::from_bits(!((event as i32) >> 31) as u32 & 1_f32.to_bits())
+fn starts_of(four: &[Event; 4]) -> usize {
+    // A start's bit is the sign bit.
+    Vec4::from_array(four.map(|e| f32::from_bits(e as u32))).is_negative_bitmask() as usize
 }
+
+/// How many bits are set.
+const STARTS: [u32; 16] = [0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4];
+
+/// What four events do to the numbers of triangles on both sides.
+#[derive(Clone, Copy)]
+struct Ends {
+    /// How many have ended, up to and with each of the four.
+    ended: Vec4,
+    /// What the left has gained on the right: one with every event, and an end has its effect already in its own plane.
+    steps: Vec4,
+}
+
+/// By what [`starts_of`] says.
+const ENDS: [Ends; 16] = {
+    let mut table = [Ends { ended: Vec4::ZERO, steps: Vec4::ZERO }; 16];
+    let mut bits = 0;
+    while bits < 16 {
+        let (mut ended, mut steps) = ([0.0; 4], [0.0; 4]);
+        let (mut sum, mut lane) = (0.0, 0);
+        while lane < 4 {
+            let end = if bits >> lane & 1 == 0 { 1.0 } else { 0.0 };
+            sum += end;
+            ended[lane] = sum;
+            steps[lane] = lane as f32 + end;
+            lane += 1;
+        }
+        table[bits] = Ends { ended: Vec4::from_array(ended), steps: Vec4::from_array(steps) };
+        bits += 1;
+    }
+    table
+};
 
 /// Compares by cost, then by position.
 #[inline(always)]
@@ -104,8 +148,9 @@ fn ranked(cost: f32, position: usize) -> u64 {
 /// The sweep with care for everything, by groups of events in one plane: ends and planar triangles leave the right before
 /// the plane is judged, planar ones and starts enter the left after it. Also returns whether planar triangles go left.
 #[cold]
-pub(super) fn careful_sweep(events: &[Event], areas: &Areas, count: usize, begun: u32) -> (u64, bool) {
-    let (mut left, mut right) = (count - begun as usize, count);
+pub(super) fn careful_sweep(events: &[Event], areas: &Areas, count: usize) -> (u64, bool) {
+    let begun_inside = events.iter().filter(|&&e| kind(e) != END).count();
+    let (mut left, mut right) = (count - begun_inside, count);
     let mut cheapest = (u64::MAX, true);
     let mut position = 0;
     for group in events.chunk_by(|a, b| a >> 32 == b >> 32) {

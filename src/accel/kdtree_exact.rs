@@ -8,7 +8,8 @@ use super::kdtree::KdNode;
 use super::kdtree_bins::Areas;
 use super::kdtree_build::{Builder, MAX_LEAVES_AND_RECORDS, Subtree, halves};
 use super::kdtree_events::{
-    END, Event, PLANAR, START, begun, careful_sweep, coordinate, event, kind, local, ordered, restored, sweep,
+    END, Event, PLANAR, SPARE, START, begun, careful_sweep, coordinate, event, kind, local, ordered, restored, starts,
+    sweep,
 };
 use super::prims::Prim;
 use super::sah::unit;
@@ -32,12 +33,12 @@ pub(super) fn build(builder: &Builder, prims: &[Prim], cell: Aabb, depth: u32) -
         out: Subtree::default(),
     };
     let locals = Span::new(0, prims.len());
-    let mut root = Node { cell, depth, locals, events: [locals; 3], begun: [0; 3], top: [locals.to; 4] };
+    let mut root = Node { cell, depth, locals, events: [locals; 3], top: [locals.to; 4] };
     for axis in 0..3 {
-        let events = sweep.first_events(axis, &cell);
+        let mut events = sweep.first_events(axis, &cell);
         root.events[axis] = Span::new(0, events.len());
-        root.begun[axis] = events.iter().map(|&e| begun(e)).sum();
         root.top[axis] = root.events[axis].to;
+        events.resize(events.len() + SPARE, 0);
         sweep.events[axis] = events;
     }
     sweep.unit = unit(&cell);
@@ -76,8 +77,6 @@ struct Node {
     locals: Span,
     /// Its events by axis: those strictly inside the cell, and all of planar triangles.
     events: [Span; 3],
-    /// How many of the events are no ends.
-    begun: [u32; 3],
     /// Where free space begins in the three lists of events and in that of triangles.
     top: [u32; 4],
 }
@@ -119,7 +118,7 @@ impl Sweep<'_> {
     /// Those on or outside the cell's border are never candidates, and the counts know them without: a triangle that
     /// does not begin inside has begun before, one that does not end inside never ends.
     fn first_events(&mut self, axis: usize, cell: &Aabb) -> Vec<Event> {
-        let mut events = Vec::with_capacity(2 * self.prims.len());
+        let mut events = Vec::with_capacity(2 * self.prims.len() + SPARE);
         for (local, prim) in self.prims.iter().enumerate() {
             let (min, max, local) = (prim.min[axis], prim.max[axis], local as u32);
             if min == max {
@@ -178,11 +177,11 @@ impl Sweep<'_> {
             let planar = self.any_planar[a] && events.iter().any(|&e| kind(e) == PLANAR);
             let (mut found, mut left) = (u64::MAX, true);
             if !planar {
-                found = sweep(events, areas, count, node.begun[a]);
+                found = sweep(&self.events[a][node.events[a].from as usize..], events.len(), areas, count);
             }
             // Seldom is the cheapest plane one that would cut off too thin a slice: then again, without such.
             if planar || (found != u64::MAX && !areas.allows(coordinate(events[found as u32 as usize]))) {
-                (found, left) = careful_sweep(events, areas, count, node.begun[a]);
+                (found, left) = careful_sweep(events, areas, count);
             }
             if found < cheapest {
                 (cheapest, axis, planar_left) = (found, a, left);
@@ -203,56 +202,41 @@ impl Sweep<'_> {
 
     /// Makes the children's lists; returns the left and the right child.
     fn divide(&mut self, node: &Node, cut: &Cut) -> [Node; 2] {
-        let begun_sides = self.classify(node, cut);
+        self.classify(node, cut);
         let (left_cell, right_cell) = halves(&node.cell, cut.axis, cut.plane);
         let child = |cell| Node { cell, depth: node.depth + 1, ..*node };
         let (mut left, mut right) = (child(left_cell), child(right_cell));
         for axis in 0..3 {
             if axis == cut.axis {
-                [left.begun[axis], right.begun[axis]] = begun_sides;
                 self.part(cut, node, &mut left, &mut right);
                 continue;
             }
-            let side = &self.side;
-            let mut begun_sides = [0; 2];
-            let [a, b] = fork(&mut self.events[axis], node.events[axis], node.top[axis], |e| {
-                let side = side[local(e)];
-                begun_sides[0] += begun(e) & u32::from(side);
-                begun_sides[1] += begun(e) & u32::from(side >> 1);
-                side
-            });
-            [left.begun[axis], right.begun[axis]] = begun_sides;
+            let side = self.side.as_slice();
+            let [a, b] = fork(&mut self.events[axis], node.events[axis], node.top[axis], |e| side[local(e)]);
             (left.events[axis], right.events[axis]) = (a, b);
             (left.top[axis], right.top[axis]) = (a.to, b.to);
         }
-        let side = &mut self.side;
+        let side = self.side.as_mut_slice();
         let both = |l: u32| std::mem::replace(&mut side[l as usize], LEFT | RIGHT);
         [left.locals, right.locals] = fork(&mut self.locals, node.locals, node.top[LOCALS], both);
         (left.top[LOCALS], right.top[LOCALS]) = (left.locals.to, right.locals.to);
         [left, right]
     }
 
-    /// Decides where every triangle of the node goes: to both sides unless an event says otherwise. Returns how many
-    /// events below and how many above the plane are no ends.
-    fn classify(&mut self, node: &Node, cut: &Cut) -> [u32; 2] {
-        let events = &self.events[cut.axis];
-        let below = Span { to: cut.here.from, ..node.events[cut.axis] };
-        let above = Span { from: cut.here.to, ..node.events[cut.axis] };
-        let mut begun_sides = [0; 2];
-        // What has ended below does not reach the right; what begins above does not reach the left.
-        for &e in below.of(events) {
-            begun_sides[0] += begun(e);
-            self.side[local(e)] &= LEFT | (((e as u32) >> 31 << 1) as u8);
+    /// Decides where every triangle of the node goes: to both sides unless an event says otherwise.
+    fn classify(&mut self, node: &Node, cut: &Cut) {
+        let (events, side) = (self.events[cut.axis].as_slice(), self.side.as_mut_slice());
+        // What ends here or below does not reach the right; what begins here or above does not reach the left.
+        for &e in (Span { to: cut.here.to, ..node.events[cut.axis] }).of(events) {
+            side[local(e)] &= LEFT | (starts(e) << 1) as u8;
         }
-        for &e in above.of(events) {
-            begun_sides[1] += begun(e);
-            self.side[local(e)] &= RIGHT | (1 - begun(e)) as u8;
+        for &e in (Span { from: cut.here.from, ..node.events[cut.axis] }).of(events) {
+            side[local(e)] &= RIGHT | (1 - begun(e)) as u8;
         }
-        for &e in cut.here.of(events) {
-            let left = kind(e) == END || (kind(e) == PLANAR && cut.planar_left);
-            self.side[local(e)] = if left { LEFT } else { RIGHT };
+        if self.any_planar[cut.axis] {
+            let own = if cut.planar_left { LEFT } else { RIGHT };
+            cut.here.of(events).iter().filter(|&&e| kind(e) == PLANAR).for_each(|&e| side[local(e)] = own);
         }
-        begun_sides
     }
 
     /// The children's events on the split axis are parts of their parent's list: those below and those above the plane.
@@ -277,11 +261,12 @@ impl Sweep<'_> {
             (&mut *right, list)
         };
         let top = node.top[axis] as usize;
-        child.begun[axis] += planar.len() as u32;
         child.events[axis] = Span::new(top, top + list.len());
         events.truncate(top);
-        events.extend(list);
-        (left.top[axis], right.top[axis]) = (events.len() as u32, events.len() as u32);
+        events.extend(&list);
+        events.extend([0; SPARE]);
+        let free = (top + list.len()) as u32;
+        (left.top[axis], right.top[axis]) = (free, free);
     }
 }
 
@@ -290,8 +275,8 @@ impl Sweep<'_> {
 #[inline(always)]
 fn fork<T: Copy + Default>(list: &mut Vec<T>, own: Span, top: u32, mut side: impl FnMut(T) -> u8) -> [Span; 2] {
     let (count, top) = (own.len(), top as usize);
-    if list.len() < top + 2 * count {
-        list.resize(2 * (top + 2 * count), T::default());
+    if list.len() < top + 2 * count + SPARE {
+        list.resize(2 * (top + 2 * count) + SPARE, T::default());
     }
     let (used, free) = list.split_at_mut(top);
     let (right_out, left_out) = free[..2 * count].split_at_mut(count);

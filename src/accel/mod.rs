@@ -30,7 +30,7 @@ mod selection;
 pub use method::{Method, Traversal};
 pub use properties::Properties;
 pub use registry::{COMMON_OPTIONS, OptionInfo, VariantInfo, variants};
-pub use selection::{Built, MAX_THREADS, Selection};
+pub use selection::{Built, Selection};
 
 use crate::math::Aabb;
 use bytemuck::{Pod, Zeroable};

@@ -43,8 +43,7 @@ pub fn preset(name: &str) -> Option<BvhBuildParams> {
 
 /// Builds a BVH over all triangles that can be hit, on the threads of the current rayon pool.
 pub fn build(scene: &Scene, params: BvhBuildParams) -> Result<Bvh> {
-    let prims = prims::prims(scene)?;
-    let bounds = prims::bounds(&prims);
+    let (prims, bounds) = prims::prims(scene)?;
     if prims.is_empty() {
         return Ok(Bvh { bounds, nodes: vec![BvhNode::NONE; 2], records: Vec::new(), depth: 0 });
     }

@@ -13,8 +13,11 @@ use rayon::prelude::*;
 pub const MAX_TRIANGLES: usize = 1 << 29;
 
 /// Triangles handled together where work is shared out between threads: a constant, so that no result depends on the
-/// number of threads.
-pub const CHUNK: usize = 8192;
+/// number of threads. Small, so that no thread waits long for the one that began last.
+pub const CHUNK: usize = 2048;
+
+/// Nodes of more triangles than this are worked on by several threads at once; others have enough to do beside them.
+pub(super) const SHARED: usize = 32_768;
 
 /// Added to an index that rides along as a float: without it the lane would be denormal, and a multiplication that
 /// meets a denormal number costs a hundred cycles. With it every index below 2^29 is an ordinary float.
@@ -41,6 +44,12 @@ impl Prim {
     #[inline(always)]
     pub fn triangle(&self) -> u32 {
         self.max.w.to_bits() ^ TAG
+    }
+
+    /// True for [`Prim::NONE`] alone.
+    #[inline(always)]
+    fn is_none(&self) -> bool {
+        self.max.w == Prim::NONE.max.w
     }
 
     /// The box alone.
@@ -70,18 +79,19 @@ pub fn prim(scene: &Scene, index: u32) -> Option<Prim> {
     Some(Prim { min: min.extend(1.0), max: max.extend(f32::from_bits(index | TAG)) })
 }
 
-/// The boxes of all triangles that can be hit, in scene order.
-pub fn prims(scene: &Scene) -> Result<Vec<Prim>> {
+/// The boxes of all triangles that can be hit, in scene order, and the box around them; [`Aabb::EMPTY`] around none.
+pub fn prims(scene: &Scene) -> Result<(Vec<Prim>, Aabb)> {
     gather(scene, Prim::NONE, |prim| prim, |prim| prim)
 }
 
-/// Something made of the box of every triangle that can be hit, in scene order. `none` must hold [`Prim::NONE`].
+/// Something made of the box of every triangle that can be hit, in scene order, and the box around them all. `none`
+/// must hold [`Prim::NONE`].
 pub(super) fn gather<T: Copy + Send + Sync>(
     scene: &Scene,
     none: T,
     make: impl Fn(Prim) -> T + Sync,
     prim_of: impl Fn(&T) -> &Prim + Sync,
-) -> Result<Vec<T>> {
+) -> Result<(Vec<T>, Aabb)> {
     let count = scene.triangles.len();
     if count >= MAX_TRIANGLES {
         return Err(Error::argument(
@@ -92,26 +102,35 @@ pub(super) fn gather<T: Copy + Send + Sync>(
     }
     let indices = (0..count as u32).into_par_iter().with_min_len(CHUNK);
     let mut items: Vec<T> = indices.map(|i| prim(scene, i).map_or(none, &make)).collect();
-    let is_none = |item: &T| prim_of(item).max.w == Prim::NONE.max.w;
-    if items.par_iter().with_min_len(CHUNK).any(is_none) {
-        items.retain(|item| !is_none(item));
+    // Whether any is missing comes out of the pass that the box takes anyway.
+    let mut around = around(&items, &prim_of);
+    if around.none > 0 {
+        items.retain(|item| !prim_of(item).is_none());
+        around = self::around(&items, &prim_of);
     }
-    Ok(items)
+    Ok((items, around.bounds))
 }
 
-/// The box around some prims; [`Aabb::EMPTY`] around none.
-pub fn bounds(prims: &[Prim]) -> Aabb {
-    bounds_by(prims, |prim| prim)
+/// What lies around some items, and how many of them are [`Prim::NONE`].
+struct Around {
+    bounds: Aabb,
+    none: usize,
 }
 
-pub(super) fn bounds_by<T: Sync>(items: &[T], prim_of: impl Fn(&T) -> &Prim + Sync) -> Aabb {
-    let around = |chunk: &[T]| {
-        let start = (Vec4::INFINITY, Vec4::NEG_INFINITY);
-        chunk.iter().map(&prim_of).fold(start, |(min, max), p| (min.min(p.min), max.max(p.max)))
+fn around<T: Sync>(items: &[T], prim_of: impl Fn(&T) -> &Prim + Sync) -> Around {
+    let part = |chunk: &[T]| {
+        let (mut min, mut max, mut none) = (Vec4::INFINITY, Vec4::NEG_INFINITY, 0);
+        for prim in chunk.iter().map(&prim_of) {
+            (min, max) = (min.min(prim.min), max.max(prim.max));
+            none += usize::from(prim.is_none());
+        }
+        Around { bounds: Aabb { min: min.truncate(), max: max.truncate() }, none }
     };
-    let boxes: Vec<_> = items.par_chunks(CHUNK).map(around).collect();
-    let aabb = |(min, max): (Vec4, Vec4)| Aabb { min: min.truncate(), max: max.truncate() };
-    boxes.into_iter().fold(Aabb::EMPTY, |all, rows| all.union(aabb(rows)))
+    let parts: Vec<Around> = items.par_chunks(CHUNK).map(part).collect();
+    parts.iter().fold(Around { bounds: Aabb::EMPTY, none: 0 }, |all, part| Around {
+        bounds: all.bounds.union(part.bounds),
+        none: all.none + part.none,
+    })
 }
 
 /// The record of triangle `index`.

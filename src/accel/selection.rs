@@ -5,6 +5,7 @@ use super::method::{Fetch, Group, Method, Pattern, ShadowRays};
 use super::registry::{OptionInfo, VariantInfo, variants};
 use crate::error::{Error, Result};
 use crate::scene::Scene;
+use crate::threads;
 use std::time::Instant;
 
 /// A variant with its options, as `--structure` gives it: `name[:key=value,...]`.
@@ -26,9 +27,6 @@ pub struct Built {
     /// Threads that the builder could use.
     pub build_threads: usize,
 }
-
-/// Most threads of a build.
-pub const MAX_THREADS: usize = 1024;
 
 impl Selection {
     /// Reads `name[:key=value,...]`.
@@ -105,17 +103,7 @@ impl Selection {
 
     /// Builds the structure on `threads` threads (0: as many as there are).
     pub fn build(&self, scene: &Scene, threads: usize) -> Result<Built> {
-        let pool_error = |problem: String| Error::argument("--threads", problem, format!("0 (all) to {MAX_THREADS}"));
-        if threads > MAX_THREADS {
-            return Err(pool_error(format!("{threads} threads are too many")));
-        }
-        let threads = if self.info().parallel { threads } else { 1 };
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .map_err(|e| pool_error(format!("cannot start {threads} threads: {e}")))?;
-        // Starting threads is no part of building: wait until all of them run.
-        pool.broadcast(|_| ());
+        let pool = threads::pool(if self.info().parallel { threads } else { 1 })?;
         pool.install(|| {
             let start = Instant::now();
             let structure = (self.info().build)(self, scene)?;

@@ -12,6 +12,7 @@ use crate::camera::View;
 use crate::error::{Error, Result};
 use crate::math::Hit;
 use crate::scene::{Light, Material, Scene};
+use crate::threads;
 use bytemuck::Zeroable;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -27,12 +28,9 @@ impl CpuBackend {
     /// A pool of `threads`; 0 takes one per processor.
     ///
     /// # Errors
-    /// [`Error::Device`] if the threads cannot be started.
+    /// Those of [`threads::pool`].
     pub fn new(threads: usize) -> Result<CpuBackend> {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .map_err(|e| Error::Device(format!("cannot start {threads} threads: {e}")))?;
+        let pool = threads::pool(threads)?;
         let info = DeviceInfo {
             name: processor_name(),
             device_type: DeviceType::CpuTwin,
