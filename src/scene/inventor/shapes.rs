@@ -132,18 +132,21 @@ impl Reader {
         if materials.is_overall() {
             self.part(0, state)?;
         }
-        let (mut points, mut directions, mut visited) = (Vec::new(), Vec::new(), 0);
+        let (mut points, mut directions, mut indices, mut visited) = (Vec::new(), Vec::new(), Vec::new(), 0);
         faces.visit(&mut |face: Face| {
             points.clear();
             points.extend(face.corners.iter().map(|corner| faces.position(corner)));
             directions.clear();
+            indices.clear();
             for (i, corner) in face.corners.iter().enumerate() {
                 match &normals {
                     Normals::Flat => break,
                     Normals::Made(made) => directions.push(made.normal(visited + i, face.visit)),
                     Normals::Given(choice) => {
-                        let at = 3 * choice.index(&face, corner)?;
-                        directions.push(state.normals.get(at..at + 3).map_or(DVec3::ZERO, DVec3::from_slice));
+                        let index = choice.index(&face, corner)?;
+                        let normal = state.normals.get(3 * index..3 * index + 3);
+                        directions.push(normal.map_or(DVec3::ZERO, DVec3::from_slice));
+                        indices.push([corner.coordinate as u32, index as u32]);
                     }
                 }
             }
@@ -151,7 +154,7 @@ impl Reader {
             if !materials.is_overall() && face.corners.len() > 2 {
                 self.bound_material(&face, &materials, state)?;
             }
-            self.mesh.polygon(&points, &directions)
+            self.mesh.indexed_polygon(&points, &directions, &indices)
         })
     }
 

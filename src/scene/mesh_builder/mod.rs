@@ -17,6 +17,7 @@ use foldhash::fast::RandomState;
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use limits::Limits;
 use shared::Shared;
+use std::cell::LazyCell;
 use std::collections::HashMap;
 pub use warnings::Warnings;
 
@@ -206,12 +207,9 @@ impl MeshBuilder {
     /// The same with a normal that [`MeshBuilder::direction`] has brought into the scene.
     fn shared_vertex(&mut self, position: DVec3, normal: Vec3) -> Result<u32, Fault> {
         let vertex = self.place(position, normal)?;
-        if let Some(index) = self.shared.find(&vertex, &self.vertices) {
-            return Ok(index);
-        }
-        let index = self.store(vertex)?;
-        self.shared.insert(index, &self.vertices);
-        Ok(index)
+        let MeshBuilder { shared, vertices, limits, .. } = self;
+        let held = shared.bytes();
+        shared.find_or(&vertex, vertices, |vertices| store(vertices, vertex, limits, held))
     }
 
     /// The same for a mesh that has indices of its own: corners with the same two indices share a vertex, others do not.
@@ -223,7 +221,17 @@ impl MeshBuilder {
             return Ok(index);
         }
         let vertex = self.place(position, self.direction(normal))?;
-        let index = self.store(vertex)?;
+        let index = store(&mut self.vertices, vertex, &mut self.limits, self.shared.bytes())?;
+        self.shared.insert_indices(indices, index);
+        Ok(index)
+    }
+
+    /// [`MeshBuilder::vertex`] of something that has indices: equal ones share a vertex whatever their indices are.
+    fn known_vertex(&mut self, indices: [u32; 2], position: DVec3, normal: DVec3) -> Result<u32, Fault> {
+        if let Some(index) = self.shared.find_indices(indices) {
+            return Ok(index);
+        }
+        let index = self.shared_vertex(position, self.direction(normal))?;
         self.shared.insert_indices(indices, index);
         Ok(index)
     }
@@ -240,16 +248,9 @@ impl MeshBuilder {
 
     /// A normal of any length as the present transform turns it, of length one or zero.
     fn direction(&self, normal: DVec3) -> Vec3 {
-        unit(self.frame().normals * unit(normal)).as_vec3() + Vec3::ZERO
-    }
-
-    fn store(&mut self, vertex: Vertex) -> Result<u32, Fault> {
-        let index = self.vertices.len();
-        self.limits.elements(index)?;
-        self.limits.grow(size_of::<Vertex>())?;
-        self.limits.hold(self.shared.bytes())?;
-        self.vertices.push(vertex);
-        Ok(index as u32)
+        let normals = self.frame().normals;
+        let turned = unit_if_easy(normals * normal).unwrap_or_else(|| unit(normals * unit(normal)));
+        turned.as_vec3() + Vec3::ZERO
     }
 
     /// A triangle between vertices, counter-clockwise where it is seen from outside.
@@ -288,7 +289,16 @@ impl MeshBuilder {
     /// # Errors
     /// A corner is beyond single precision, or there is too much.
     pub fn polygon(&mut self, corners: &[DVec3], normals: &[DVec3]) -> Result<(), Fault> {
-        self.polygon_with_holes(corners, normals, &[])
+        self.any_polygon(corners, normals, &[], &[])
+    }
+
+    /// The same for a mesh that has indices of its own: with a position's and a normal's for each corner, a vertex that
+    /// comes again within this shape is found without looking at either.
+    ///
+    /// # Errors
+    /// As [`MeshBuilder::polygon`].
+    pub fn indexed_polygon(&mut self, corners: &[DVec3], normals: &[DVec3], indices: &[[u32; 2]]) -> Result<(), Fault> {
+        self.any_polygon(corners, normals, indices, &[])
     }
 
     /// The same with holes: each begins at one of the indices in `holes` and ends before the next; the polygon's own
@@ -297,29 +307,50 @@ impl MeshBuilder {
     /// # Errors
     /// As [`MeshBuilder::polygon`].
     pub fn polygon_with_holes(&mut self, corners: &[DVec3], normals: &[DVec3], holes: &[u32]) -> Result<(), Fault> {
+        self.any_polygon(corners, normals, &[], holes)
+    }
+
+    fn any_polygon(
+        &mut self,
+        corners: &[DVec3],
+        normals: &[DVec3],
+        indices: &[[u32; 2]],
+        holes: &[u32],
+    ) -> Result<(), Fault> {
         let outer = holes.first().map_or(corners.len(), |&first| first as usize);
         if outer < 3 {
             self.warnings.add("polygon with fewer than three corners left out");
             return Ok(());
         }
-        let flat = newell(&corners[..outer]);
-        let own = self.direction(flat);
+        // Many need none: triangles whose corners have normals
+        let flat = LazyCell::new(|| newell(&corners[..outer]));
+        let mut own = None;
         let mut vertices = std::mem::take(&mut self.corners);
         vertices.clear();
         for (i, &corner) in corners.iter().enumerate() {
             let given = normals.get(i).copied().unwrap_or(DVec3::ZERO);
-            let has_length = unit(given) != DVec3::ZERO;
+            let has_length = has_direction(given);
             if !normals.is_empty() && !has_length {
                 self.warnings.add("normal of no length: the polygon's own taken");
             }
-            let normal = if has_length { self.direction(given) } else { own };
-            vertices.push(self.shared_vertex(corner, normal)?);
+            vertices.push(match indices.get(i) {
+                _ if !has_length => {
+                    let normal = *own.get_or_insert_with(|| self.direction(*flat));
+                    self.shared_vertex(corner, normal)?
+                }
+                Some(&indices) => self.known_vertex(indices, corner, given)?,
+                None => self.shared_vertex(corner, self.direction(given))?,
+            });
         }
-        let mut triangulator = std::mem::take(&mut self.triangulator);
-        for &[a, b, c] in triangulator.triangles(corners, holes, flat) {
-            self.triangle([a, b, c].map(|i| vertices[i as usize]))?;
+        if let [a, b, c] = vertices[..] {
+            self.triangle([a, b, c])?;
+        } else {
+            let mut triangulator = std::mem::take(&mut self.triangulator);
+            for &[a, b, c] in triangulator.triangles(corners, holes, *flat) {
+                self.triangle([a, b, c].map(|i| vertices[i as usize]))?;
+            }
+            self.triangulator = triangulator;
         }
-        self.triangulator = triangulator;
         self.corners = vertices;
         Ok(())
     }
@@ -337,10 +368,34 @@ impl MeshBuilder {
 
 const FINITE: &str = "bring the scene closer to its origin, or repair its transforms";
 
+/// Adds a vertex, if it and what the tables hold are within the limits.
+fn store(vertices: &mut Vec<Vertex>, vertex: Vertex, limits: &mut Limits, held: usize) -> Result<u32, Fault> {
+    let index = vertices.len();
+    limits.elements(index)?;
+    limits.grow(size_of::<Vertex>())?;
+    limits.hold(held)?;
+    vertices.push(vertex);
+    Ok(index as u32)
+}
+
 /// A unit vector of that direction; zero for what has none.
-fn unit(v: DVec3) -> DVec3 {
+pub(super) fn unit(v: DVec3) -> DVec3 {
+    unit_if_easy(v)
+        .unwrap_or_else(|| if has_direction(v) { (v / v.abs().max_element()).normalize_or_zero() } else { DVec3::ZERO })
+}
+
+/// The unit vector if squares are far from what doubles hold: most of them, and the quick way.
+#[inline]
+fn unit_if_easy(v: DVec3) -> Option<DVec3> {
+    let square = v.length_squared();
+    (1e-200..1e200).contains(&square).then(|| v * square.sqrt().recip())
+}
+
+/// False for a vector without length, and for one that is not finite.
+#[inline]
+fn has_direction(v: DVec3) -> bool {
     let largest = v.abs().max_element();
-    if largest > 0.0 && largest.is_finite() { (v / largest).normalize_or_zero() } else { DVec3::ZERO }
+    v.is_finite() && largest > 0.0
 }
 
 #[cfg(test)]

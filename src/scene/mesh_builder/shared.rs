@@ -2,42 +2,67 @@
 
 use crate::math::Vertex;
 use foldhash::fast::RandomState;
-use hashbrown::HashTable;
+use hashbrown::hash_table::{Entry, HashTable};
 use std::collections::HashMap;
-use std::hash::BuildHasher;
+use std::hash::{BuildHasher, Hasher};
 
 /// Places that a table keeps for the next shape.
 const KEPT: usize = 1024;
 
-/// Bytes per place: an index and the table's own byte, at seven places of eight in use; half as much again while it grows.
-const PER_PLACE: usize = 9;
+/// Bytes per place: its eight and the table's own byte, at seven places of eight in use; half as much again while it grows.
+const PER_PLACE: usize = 16;
 
 /// The same with a key of eight bytes.
 const PER_KEYED_PLACE: usize = 23;
+
+/// A vertex: its hash, so that a growing table need not look at it, and its index.
+#[derive(Clone, Copy)]
+struct Place {
+    hash: u32,
+    index: u32,
+}
+
+impl Place {
+    /// The hash over all 64 bits, as the table wants it.
+    fn spread(self) -> u64 {
+        u64::from(self.hash).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+    }
+}
 
 /// Vertices by position and normal, and by the indices that a mesh has for them.
 #[derive(Default)]
 pub struct Shared {
     hasher: RandomState,
-    /// Indices only: what they are compared by stands in the vertices.
-    by_place: HashTable<u32>,
+    /// What they are compared by stands in the vertices.
+    by_place: HashTable<Place>,
     by_indices: HashMap<[u32; 2], u32, RandomState>,
 }
 
 impl Shared {
-    /// The vertex that is the same to the bit.
+    /// The vertex that is the same to the bit, or else the one that `add` adds.
+    ///
+    /// # Errors
+    /// Those of `add`.
     #[inline]
-    pub fn find(&self, vertex: &Vertex, vertices: &[Vertex]) -> Option<u32> {
+    pub fn find_or<E>(
+        &mut self,
+        vertex: &Vertex,
+        vertices: &mut Vec<Vertex>,
+        add: impl FnOnce(&mut Vec<Vertex>) -> Result<u32, E>,
+    ) -> Result<u32, E> {
         let bits = bits(vertex);
-        let same = |&index: &u32| self::bits(&vertices[index as usize]) == bits;
-        self.by_place.find(self.hasher.hash_one(bits), same).copied()
-    }
-
-    /// Adds the vertex of that index, of which there is none like it.
-    #[inline]
-    pub fn insert(&mut self, index: u32, vertices: &[Vertex]) {
-        let hash = |&index: &u32| self.hasher.hash_one(bits(&vertices[index as usize]));
-        self.by_place.insert_unique(hash(&index), index, hash);
+        let mut hasher = self.hasher.build_hasher();
+        bits.iter().for_each(|&word| hasher.write_u64(word));
+        let place = Place { hash: hasher.finish() as u32, index: 0 };
+        let same = |other: &Place| other.hash == place.hash && self::bits(&vertices[other.index as usize]) == bits;
+        match self.by_place.entry(place.spread(), same, |other| other.spread()) {
+            Entry::Occupied(found) => Ok(found.get().index),
+            Entry::Vacant(free) => {
+                let index = add(vertices)?;
+                free.insert(Place { index, ..place });
+                Ok(index)
+            }
+        }
     }
 
     /// The vertex of these indices.

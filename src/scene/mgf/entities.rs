@@ -4,6 +4,7 @@ use super::colour::Chromaticity;
 use super::materials::Share;
 use super::transform::{number_of, places};
 use super::{MAX_DEPTH, Reader};
+use crate::scene::mesh_builder::unit;
 use crate::scene::text::{Fault, Trouble, Words, quote_bytes};
 use glam::DVec3;
 use std::path::Path;
@@ -131,7 +132,7 @@ impl Reader {
         match entity {
             b"v" => self.vertices.select(arguments)?,
             b"p" => self.vertices.change().position = DVec3::from(numbers(arguments)?),
-            b"n" => self.vertices.change().normal = DVec3::from(numbers(arguments)?),
+            b"n" => self.vertices.change().normal = unit(DVec3::from(numbers(arguments)?)).as_vec3(),
             b"c" => self.colours.select(arguments)?,
             b"cxy" | b"cspec" | b"cct" | b"cmix" => self.colour(entity, arguments)?,
             b"m" => {

@@ -27,7 +27,7 @@ use super::{Options, Scene};
 use crate::error::Result;
 use colour::Chromaticity;
 use context::Contexts;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use lights::Emitters;
 use materials::Surface;
 use std::path::Path;
@@ -49,8 +49,8 @@ static SYNTAX: Syntax = Syntax::new(b"", b"");
 #[derive(Clone, Copy, Default)]
 struct Point {
     position: DVec3,
-    /// Zero where the surface's own normal is meant.
-    normal: DVec3,
+    /// Of length one; zero where the surface's own normal is meant. Single precision: a file may name all its vertices.
+    normal: Vec3,
 }
 
 struct Reader {

@@ -4,7 +4,7 @@ use super::transform::number_of;
 use super::{Point, Reader};
 use crate::scene::polygon::newell;
 use crate::scene::text::Fault;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 impl Reader {
     /// Reads a shape of the current material.
@@ -46,13 +46,19 @@ impl Reader {
                 if radii[0] < 0.0 || radii[1] < radii[0] {
                     return Err(Fault::new(None, "the radii are not 0 <= inner < outer", "put the inner one first"));
                 }
-                self.mesh.ring(position, normal, radii, self.segments)?;
+                self.mesh.ring(position, normal.as_dvec3(), radii, self.segments)?;
             }
             (b"torus", &[center, inner, outer]) => {
                 let Point { position, normal } = *self.vertices.find(center)?;
                 // Negative radii turn it inside out
                 let (inner, outer) = (number_of(inner)?, number_of(outer)?);
-                self.mesh.torus(position, normal, (inner + outer).abs() / 2.0, (outer - inner) / 2.0, self.segments)?;
+                self.mesh.torus(
+                    position,
+                    normal.as_dvec3(),
+                    (inner + outer).abs() / 2.0,
+                    (outer - inner) / 2.0,
+                    self.segments,
+                )?;
             }
             (b"prism", [names @ .., length]) => self.prism(names, number_of(length)?)?,
             _ => return Err(Fault::new(None, format!("{} arguments are not what it takes", arguments.len()), "")),
@@ -72,12 +78,12 @@ impl Reader {
     /// A face; where a vertex has no normal it is the face's own.
     fn face(&mut self, points: &[Point], holes: &[u32]) -> Result<(), Fault> {
         let corners: Vec<DVec3> = points.iter().map(|point| point.position).collect();
-        if points.iter().all(|point| point.normal == DVec3::ZERO) {
+        if points.iter().all(|point| point.normal == Vec3::ZERO) {
             return self.mesh.polygon_with_holes(&corners, &[], holes);
         }
         let outer = holes.first().map_or(corners.len(), |&first| first as usize);
         let own = newell(&corners[..outer]);
-        let normal = |point: &Point| if point.normal == DVec3::ZERO { own } else { point.normal };
+        let normal = |point: &Point| if point.normal == Vec3::ZERO { own } else { point.normal.as_dvec3() };
         let normals: Vec<DVec3> = points.iter().map(normal).collect();
         self.mesh.polygon_with_holes(&corners, &normals, holes)
     }
@@ -107,7 +113,7 @@ impl Reader {
         for i in 0..near.len() {
             let next = (i + 1) % near.len();
             let corners = [near[i], far[i], far[next], near[next]];
-            match [points[i].normal, points[next].normal] {
+            match [i, next].map(|i| points[i].normal.as_dvec3()) {
                 [a, b] if a != DVec3::ZERO && b != DVec3::ZERO => self.mesh.polygon(&corners, &[a, a, b, b])?,
                 _ => self.mesh.polygon(&corners, &[])?,
             }

@@ -21,14 +21,9 @@ fn size(scene: &Scene) -> u64 {
     (vertices + triangles + materials + lights + poses) as u64
 }
 
-/// Files that do not keep to four times their scene, and what they do keep to. The classroom is a small scene in which most
-/// vertices have a name of their own: names and points in double precision take more than what becomes of them.
-const EXCEPTIONS: [(&str, u64); 1] = [("classroom.mgf", 6)];
-
 /// Four times the scene, the file, and a little.
-fn limit(name: &str, scene: &Scene, file: u64) -> u64 {
-    let times = EXCEPTIONS.iter().find(|(exception, _)| *exception == name).map_or(4, |(_, times)| *times);
-    times * size(scene) + file + BASE
+fn limit(scene: &Scene, file: u64) -> u64 {
+    4 * size(scene) + file + BASE
 }
 
 /// Loads a file and says what is wrong if that took too much at any moment. `bytes` is the size of all that is read.
@@ -41,7 +36,7 @@ fn too_much(what: &Path, bytes: u64) -> Option<String> {
     let name = what.file_name().unwrap().to_string_lossy();
     let line = format!("{name}: {} KiB at once, {multiple:.2} times the scene and the file", counted.bytes_max >> 10);
     eprintln!("{line}");
-    (counted.bytes_max > limit(&name, &scene, bytes)).then_some(line)
+    (counted.bytes_max > limit(&scene, bytes)).then_some(line)
 }
 
 fn hold(files: &[(std::path::PathBuf, u64)]) {
@@ -144,5 +139,5 @@ fn built_files_take_four_times_their_scene_at_most() {
     // Nothing of a cache's file is kept: it is read into its place
     written.push((files.path("built.rtb"), 0));
     hold(&written);
-    assert!(limit("a.ply", &scene, 7) == 4 * size(&scene) + 7 + BASE && size(&scene) > 600_000);
+    assert!(limit(&scene, 7) == 4 * size(&scene) + 7 + BASE && size(&scene) > 600_000);
 }
