@@ -7,14 +7,36 @@ use std::time::{Duration, Instant};
 /// Bytes that reading may take beside sixteen times the file's.
 const BASE: u64 = 64 << 20;
 
-/// What counts as a hang. Two seconds are the limit of a machine that does nothing else; nothing that ends takes ten times
-/// as long, however busy the machine is.
+/// Processor time that reading may take.
+const MOMENT: Duration = Duration::from_secs(2);
+
+/// What counts as a hang by the clock, however busy the machine is.
 const HANG: Duration = Duration::from_secs(20);
 
 /// Fails if so many bytes of files may not lead to such a peak of memory (of this thread: readers allocate nowhere else).
 pub fn hold_memory(what: &str, peak: u64, file_bytes: usize) {
     let limit = 16 * file_bytes as u64 + BASE;
     assert!(peak <= limit, "{what}: {peak} bytes allocated at once, {limit} are allowed for a file of {file_bytes}");
+}
+
+/// Runs something; returns the processor time that this thread spent on it.
+pub fn processor_time(run: impl FnOnce()) -> Duration {
+    #[cfg(unix)]
+    let now = || {
+        let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+        Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
+    };
+    // Elsewhere the watchdog alone watches
+    #[cfg(not(unix))]
+    let now = || Duration::ZERO;
+    let begun = now();
+    run();
+    now() - begun
+}
+
+/// Fails if reading took longer than it may.
+pub fn hold_time(what: &str, time: Duration) {
+    assert!(time <= MOMENT, "{what}: {time:?} of processor time, {MOMENT:?} are allowed");
 }
 
 /// Ends the whole test program if one piece of work takes for ever: a thread that hangs cannot be stopped otherwise.
@@ -63,6 +85,12 @@ fn the_limits_can_be_overstepped() {
     hold_memory("as allowed", 16 * 100 + (64 << 20), 100);
     let caught = std::panic::catch_unwind(|| hold_memory("too much", 16 * 100 + (64 << 20) + 1, 100));
     assert!(caught.is_err());
+    hold_time("as allowed", MOMENT);
+    assert!(std::panic::catch_unwind(|| hold_time("too long", MOMENT + Duration::from_nanos(1))).is_err());
+    // Waiting is not work; work is
+    assert!(processor_time(|| std::thread::sleep(Duration::from_millis(100))) < Duration::from_millis(50));
+    let work = || drop((0..10_000_000_u64).fold(0, |sum, i| std::hint::black_box(sum ^ i)));
+    assert!(processor_time(work) > Duration::ZERO || cfg!(not(unix)));
     assert!(is_hang(Duration::from_secs(21)) && !is_hang(Duration::from_secs(19)));
     // What is counted is the peak, freed or not.
     let counted = allocation_counter::measure(|| drop(std::hint::black_box(vec![1u8; 1 << 20])));
