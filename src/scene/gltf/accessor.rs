@@ -20,6 +20,26 @@ pub fn vectors(accessor: &Accessor, buffers: &Buffers) -> Result<Vec<Vec3>, Faul
     })
 }
 
+/// Refuses an accessor that has more elements than its bytes, or the file, can have. To be asked before memory is set aside
+/// for them.
+pub fn check(accessor: &Accessor, buffers: &Buffers) -> Result<(), Fault> {
+    let (size, count) = (accessor.size(), accessor.count());
+    match accessor.view() {
+        Some(view) => {
+            let bytes = buffers.view(&view)?;
+            let fits = slots(bytes, accessor.offset(), view.stride(), size, count).is_some();
+            if fits { Ok(()) } else { Err(fault(accessor, BEYOND)) }
+        }
+        None if accessor.sparse().is_none() => Err(fault(accessor, "has no data")),
+        None if count > FREE_ELEMENTS.max(buffers.total()) => {
+            Err(fault(accessor, "has more elements than the file can fill"))
+        }
+        None => Ok(()),
+    }
+}
+
+const BEYOND: &str = "reaches beyond its buffer view";
+
 /// Indices of one, two or four bytes.
 pub fn indices(accessor: &Accessor, buffers: &Buffers) -> Result<Vec<u32>, Fault> {
     if accessor.dimensions() != Dimensions::Scalar {
@@ -52,15 +72,12 @@ fn fault(accessor: &Accessor, problem: &str) -> Fault {
 /// All elements of `size` bytes; sparse ones replace those of the base, which is zero if there is none.
 fn read<T: Clone>(accessor: &Accessor, buffers: &Buffers, size: usize, one: fn(&[u8]) -> T) -> Result<Vec<T>, Fault> {
     let count = accessor.count();
-    let beyond = || fault(accessor, "reaches beyond its buffer view");
+    let beyond = || fault(accessor, BEYOND);
+    check(accessor, buffers)?;
     let mut elements = match accessor.view() {
         Some(view) => {
             let bytes = buffers.view(&view)?;
             slots(bytes, accessor.offset(), view.stride(), size, count).ok_or_else(beyond)?.map(one).collect()
-        }
-        None if accessor.sparse().is_none() => return Err(fault(accessor, "has no data")),
-        None if count > FREE_ELEMENTS.max(buffers.total()) => {
-            return Err(fault(accessor, "has more elements than the file can fill"));
         }
         None => vec![one(&[0; 12][..size]); count],
     };

@@ -140,7 +140,11 @@ impl Reader {
             for (i, corner) in face.corners.iter().enumerate() {
                 match &normals {
                     Normals::Flat => break,
-                    Normals::Made(made) => directions.push(made.normal(visited + i, face.visit)),
+                    Normals::Made(made) => {
+                        let (normal, looked_at) = made.normal(visited + i, face.visit);
+                        self.smooth(looked_at)?;
+                        directions.push(normal);
+                    }
                     Normals::Given(choice) => {
                         let at = 3 * choice.index(&face, corner)?;
                         directions.push(state.normals.get(at..at + 3).map_or(DVec3::ZERO, DVec3::from_slice));

@@ -15,7 +15,7 @@ use super::{Light, Material, Scene, Triangle};
 use crate::math::Vertex;
 use foldhash::fast::RandomState;
 use glam::{DAffine3, DMat3, DVec3, Vec3};
-use limits::Limits;
+pub use limits::Limits;
 use shared::Shared;
 use std::collections::HashMap;
 pub use warnings::Warnings;
@@ -99,6 +99,11 @@ impl MeshBuilder {
     /// It is more than the file may take.
     pub fn charge(&mut self, bytes: usize) -> Result<(), Fault> {
         self.limits.grow(bytes)
+    }
+
+    /// Gives back memory that was charged.
+    pub fn discharge(&mut self, bytes: usize) {
+        self.limits.shrink(bytes);
     }
 
     /// The same for memory that a reader is about to take and will soon give back.
