@@ -91,6 +91,7 @@ impl MeshBuilder {
     /// Tells the size of a file that is being read: the mesh may grow with it. An included file counts once.
     pub fn read(&mut self, bytes: usize) {
         self.limits.read(bytes);
+        self.triangulator.read(bytes);
     }
 
     /// Holds memory that a reader keeps of the file beside the mesh against the same limits.

@@ -133,6 +133,12 @@ impl Default for Faces {
 }
 
 impl Faces {
+    /// Tells the size of a file that is being read: what may be made of it grows.
+    pub fn read(&mut self, bytes: usize) {
+        self.limits.read(bytes);
+        self.triangulator.read(bytes);
+    }
+
     /// `s`.
     pub fn smoothing(&mut self, smoothing: Smoothing) {
         self.smoothing = smoothing;

@@ -64,7 +64,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
 /// As [`read`].
 pub fn read_bytes(path: &Path, bytes: &[u8], options: &Options) -> Result<Scene> {
     let mut reader = Reader::new(path, options);
-    reader.faces.limits.read(bytes.len());
+    reader.faces.read(bytes.len());
     let mut lines = Lines::new(bytes);
     while let Some(keyword) = lines.keyword() {
         reader.line(keyword, &mut lines)?;
@@ -205,7 +205,7 @@ impl<'a> Reader<'a> {
                 continue;
             }
             let bytes = super::read_file(&path)?;
-            self.faces.limits.read(bytes.len());
+            self.faces.read(bytes.len());
             let library = mtl::parse(&bytes).map_err(|fault| fault.of(&path))?;
             self.textures |= library.textures;
             for (name, material, emission) in library.materials {
