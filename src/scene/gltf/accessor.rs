@@ -40,15 +40,27 @@ pub fn check(accessor: &Accessor, buffers: &Buffers) -> Result<(), Fault> {
 
 const BEYOND: &str = "reaches beyond its buffer view";
 
+/// The same for what must be indices.
+pub fn check_indices(accessor: &Accessor, buffers: &Buffers) -> Result<(), Fault> {
+    index(accessor)?;
+    check(accessor, buffers)
+}
+
 /// Indices of one, two or four bytes.
 pub fn indices(accessor: &Accessor, buffers: &Buffers) -> Result<Vec<u32>, Fault> {
+    let (size, one) = index(accessor)?;
+    read(accessor, buffers, size, one)
+}
+
+/// Bytes of an index, and how it is read.
+fn index(accessor: &Accessor) -> Result<(usize, fn(&[u8]) -> u32), Fault> {
     if accessor.dimensions() != Dimensions::Scalar {
         return Err(fault(accessor, "must have one index per element"));
     }
     match accessor.data_type() {
-        DataType::U8 => read(accessor, buffers, 1, index_u8),
-        DataType::U16 => read(accessor, buffers, 2, index_u16),
-        DataType::U32 => read(accessor, buffers, 4, index_u32),
+        DataType::U8 => Ok((1, index_u8)),
+        DataType::U16 => Ok((2, index_u16)),
+        DataType::U32 => Ok((4, index_u32)),
         _ => Err(fault(accessor, "must hold unsigned integers")),
     }
 }

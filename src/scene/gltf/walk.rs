@@ -139,7 +139,7 @@ impl<'a> Walk<'a> {
         };
         accessor::check(&positions, self.buffers)?;
         if let Some(indices) = primitive.indices() {
-            accessor::check(&indices, self.buffers)?;
+            accessor::check_indices(&indices, self.buffers)?;
         }
         self.hold(primitive, positions.count())?;
         let positions = accessor::vectors(&positions, self.buffers)?;
