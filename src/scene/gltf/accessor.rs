@@ -52,8 +52,11 @@ pub fn indices(accessor: &Accessor, buffers: &Buffers) -> Result<Vec<u32>, Fault
     read(accessor, buffers, size, one)
 }
 
+/// How an index is read from its bytes.
+type ReadIndex = fn(&[u8]) -> u32;
+
 /// Bytes of an index, and how it is read.
-fn index(accessor: &Accessor) -> Result<(usize, fn(&[u8]) -> u32), Fault> {
+fn index(accessor: &Accessor) -> Result<(usize, ReadIndex), Fault> {
     if accessor.dimensions() != Dimensions::Scalar {
         return Err(fault(accessor, "must have one index per element"));
     }
@@ -95,7 +98,7 @@ fn read<T: Clone>(accessor: &Accessor, buffers: &Buffers, size: usize, one: fn(&
     };
     if let Some(sparse) = accessor.sparse() {
         use gltf::accessor::sparse::IndexType;
-        let (size_of_index, index): (usize, fn(&[u8]) -> u32) = match sparse.indices().index_type() {
+        let (size_of_index, index): (usize, ReadIndex) = match sparse.indices().index_type() {
             IndexType::U8 => (1, index_u8),
             IndexType::U16 => (2, index_u16),
             IndexType::U32 => (4, index_u32),
