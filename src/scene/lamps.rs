@@ -14,6 +14,9 @@ use std::collections::HashMap;
 /// Most lights that a file's lamps make: every one is a shadow ray per pixel.
 pub const MAX_LIGHTS: usize = 4;
 
+/// Memory per triangle that shines, at most: its lamp twice, its corners' places, a tree's link and a pointer.
+pub const BYTES: usize = 2 * size_of::<Lamp>() + 3 * 42 + 2 * size_of::<usize>();
+
 /// A lamp, or several.
 #[derive(Clone, Copy, Debug, Default)]
 struct Lamp {

@@ -8,6 +8,11 @@ use glam::{DVec2, DVec3};
 /// Larger polygons are not examined: ear clipping may take the square of the number of corners.
 const MAX_CORNERS: usize = 4096;
 
+/// What may be cut in all, as the sum of the squares of numbers of corners: so much in any case, and so much more per byte of
+/// the file. (A corner needs some bytes: polygons of a few hundred corners may be as many as there is room for.)
+const WORK: usize = 1 << 27;
+const WORK_PER_BYTE: usize = 128;
+
 /// Newell's normal of a polygon, also of one that is not quite planar: its length is twice the area, its direction the
 /// side on which the corners turn counter-clockwise. Zero if there is no area, or if it cuts itself into equal halves.
 pub fn newell(corners: &[DVec3]) -> DVec3 {
@@ -23,14 +28,23 @@ pub struct Triangulator {
     earcut: Option<Earcut<f64>>,
     indices: Vec<u32>,
     triangles: Vec<[u32; 3]>,
+    /// Of [`WORK`].
+    spent: usize,
+    /// Of the file.
+    bytes: usize,
 }
 
 impl Triangulator {
+    /// Tells the size of a file that is being read: more may be cut.
+    pub fn read(&mut self, bytes: usize) {
+        self.bytes = self.bytes.saturating_add(bytes);
+    }
+
     /// Triangles of corner indices, turning as the polygon does. `holes` has the index at which each hole begins;
     /// `normal` is Newell's of the outer corners, of which there are three at least.
     ///
     /// Without holes these are always `corners.len() - 2`, so that triangles can be counted from the file. What cannot
-    /// be cut (it cuts itself, or has too many corners) is the fan of its outer corners.
+    /// be cut (it cuts itself, has too many corners, or comes behind too many of that kind) is the fan of its outer corners.
     pub fn triangles(&mut self, corners: &[DVec3], holes: &[u32], normal: DVec3) -> &[[u32; 3]] {
         self.triangles.clear();
         let fan = corners.len() == 3 || corners.len() > MAX_CORNERS || holes.is_empty() && fan_covers(corners, normal);
@@ -43,6 +57,10 @@ impl Triangulator {
 
     /// Cuts ears; false if there are not as many as there should be.
     fn cut(&mut self, corners: &[DVec3], holes: &[u32], normal: DVec3) -> bool {
+        if self.spent > WORK.saturating_add(WORK_PER_BYTE.saturating_mul(self.bytes)) {
+            return false;
+        }
+        self.spent += corners.len() * corners.len();
         self.flatten(corners, normal);
         self.indices.clear();
         let earcut = self.earcut.get_or_insert_with(Earcut::new);
@@ -129,6 +147,25 @@ mod tests {
                 assert!((sum - normal.length()).abs() < 1e-9 * sum, "start {start}: {sum}");
             }
         }
+    }
+
+    /// A comb of 4000 corners: what it costs to cut could be asked for again and again, in a few bytes.
+    #[test]
+    fn what_may_be_cut_has_an_end_that_grows_with_the_file() {
+        let upper = (0..2000).map(|i| [f64::from(i), f64::from(1000 * (i % 2) + 1)]);
+        let lower = (0..2000).rev().map(|i| [f64::from(i), f64::from(1000 * (i % 2))]);
+        let corners: Vec<DVec3> = upper.chain(lower).map(PLANES[0]).collect();
+        let normal = newell(&corners);
+        let mut triangulator = Triangulator::default();
+        let mut cut = || {
+            let found = triangulator.triangles(&corners, &[], normal);
+            assert_eq!(found.len(), 3998);
+            found.iter().any(|triangle| triangle[0] != 0)
+        };
+        assert_eq!((0..15).filter(|_| cut()).count(), 9, "9 squares of 4000 are more than 2^27");
+        triangulator.read(200_000);
+        let found = triangulator.triangles(&corners, &[], normal);
+        assert!(found.iter().any(|triangle| triangle[0] != 0), "a larger file may have more");
     }
 
     #[test]

@@ -97,7 +97,8 @@ impl Keyframes {
 
     /// Whether things are visible at a time: before the first key they are.
     pub fn visible(&self, time: f64) -> bool {
-        self.visibility.iter().take_while(|key| key.0 <= time).last().is_none_or(|key| key.1)
+        let before = self.visibility.partition_point(|key| key.0 <= time);
+        before == 0 || self.visibility[before - 1].1
     }
 }
 

@@ -20,15 +20,50 @@ pub fn vectors(accessor: &Accessor, buffers: &Buffers) -> Result<Vec<Vec3>, Faul
     })
 }
 
+/// Refuses an accessor that has more elements than its bytes, or the file, can have. To be asked before memory is set aside
+/// for them.
+pub fn check(accessor: &Accessor, buffers: &Buffers) -> Result<(), Fault> {
+    let (size, count) = (accessor.size(), accessor.count());
+    match accessor.view() {
+        Some(view) => {
+            let bytes = buffers.view(&view)?;
+            let fits = slots(bytes, accessor.offset(), view.stride(), size, count).is_some();
+            if fits { Ok(()) } else { Err(fault(accessor, BEYOND)) }
+        }
+        None if accessor.sparse().is_none() => Err(fault(accessor, "has no data")),
+        None if count > FREE_ELEMENTS.max(buffers.total()) => {
+            Err(fault(accessor, "has more elements than the file can fill"))
+        }
+        None => Ok(()),
+    }
+}
+
+const BEYOND: &str = "reaches beyond its buffer view";
+
+/// The same for what must be indices.
+pub fn check_indices(accessor: &Accessor, buffers: &Buffers) -> Result<(), Fault> {
+    index(accessor)?;
+    check(accessor, buffers)
+}
+
 /// Indices of one, two or four bytes.
 pub fn indices(accessor: &Accessor, buffers: &Buffers) -> Result<Vec<u32>, Fault> {
+    let (size, one) = index(accessor)?;
+    read(accessor, buffers, size, one)
+}
+
+/// How an index is read from its bytes.
+type ReadIndex = fn(&[u8]) -> u32;
+
+/// Bytes of an index, and how it is read.
+fn index(accessor: &Accessor) -> Result<(usize, ReadIndex), Fault> {
     if accessor.dimensions() != Dimensions::Scalar {
         return Err(fault(accessor, "must have one index per element"));
     }
     match accessor.data_type() {
-        DataType::U8 => read(accessor, buffers, 1, index_u8),
-        DataType::U16 => read(accessor, buffers, 2, index_u16),
-        DataType::U32 => read(accessor, buffers, 4, index_u32),
+        DataType::U8 => Ok((1, index_u8)),
+        DataType::U16 => Ok((2, index_u16)),
+        DataType::U32 => Ok((4, index_u32)),
         _ => Err(fault(accessor, "must hold unsigned integers")),
     }
 }
@@ -52,21 +87,18 @@ fn fault(accessor: &Accessor, problem: &str) -> Fault {
 /// All elements of `size` bytes; sparse ones replace those of the base, which is zero if there is none.
 fn read<T: Clone>(accessor: &Accessor, buffers: &Buffers, size: usize, one: fn(&[u8]) -> T) -> Result<Vec<T>, Fault> {
     let count = accessor.count();
-    let beyond = || fault(accessor, "reaches beyond its buffer view");
+    let beyond = || fault(accessor, BEYOND);
+    check(accessor, buffers)?;
     let mut elements = match accessor.view() {
         Some(view) => {
             let bytes = buffers.view(&view)?;
             slots(bytes, accessor.offset(), view.stride(), size, count).ok_or_else(beyond)?.map(one).collect()
         }
-        None if accessor.sparse().is_none() => return Err(fault(accessor, "has no data")),
-        None if count > FREE_ELEMENTS.max(buffers.total()) => {
-            return Err(fault(accessor, "has more elements than the file can fill"));
-        }
         None => vec![one(&[0; 12][..size]); count],
     };
     if let Some(sparse) = accessor.sparse() {
         use gltf::accessor::sparse::IndexType;
-        let (size_of_index, index): (usize, fn(&[u8]) -> u32) = match sparse.indices().index_type() {
+        let (size_of_index, index): (usize, ReadIndex) = match sparse.indices().index_type() {
             IndexType::U8 => (1, index_u8),
             IndexType::U16 => (2, index_u16),
             IndexType::U32 => (4, index_u32),

@@ -7,50 +7,79 @@ use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use gltf::Document;
 use gltf::buffer::{Source, View};
 use std::borrow::Cow;
-use std::path::{Component, Path};
+use std::collections::HashMap;
+use std::path::{Component, Path, PathBuf};
 
 /// All buffers of a file.
 pub struct Buffers<'a> {
-    buffers: Vec<Cow<'a, [u8]>>,
+    /// By their index in the document, which of the contents they have.
+    buffers: Vec<usize>,
+    /// Each file once, however many buffers name it.
+    contents: Vec<Cow<'a, [u8]>>,
+    /// Bytes of files.
+    beside: usize,
 }
 
 impl<'a> Buffers<'a> {
     /// Loads them: from the GLB itself, from data URIs, from files inside the scene's folder (elsewhere only if the option
     /// `outside` allows it).
     pub fn load(path: &Path, document: &Document, blob: Option<&'a [u8]>, options: &Options) -> Result<Self, Fault> {
-        let mut buffers = Vec::new();
+        let mut all = Buffers { buffers: Vec::new(), contents: Vec::new(), beside: 0 };
+        let mut files: HashMap<PathBuf, usize> = HashMap::new();
         for buffer in document.buffers() {
-            let bytes: Cow<[u8]> = match buffer.source() {
+            let content = match buffer.source() {
                 Source::Bin => match blob {
-                    Some(blob) => blob.into(),
+                    Some(blob) => all.add(blob.into()),
                     None => return Err(("the file has no binary chunk, but needs one".into(), "export it again")),
                 },
                 Source::Uri(uri) => match uri.strip_prefix("data:") {
-                    Some(data) => decode(data)?.into(),
-                    None => file(path, uri, options)?.into(),
+                    Some(data) => all.add(decode(data)?.into()),
+                    None => {
+                        let (shown, file) = place(path, uri, options)?;
+                        match files.get(&file) {
+                            Some(&content) => content,
+                            None => {
+                                let content = all.add(read(&shown, &file)?.into());
+                                all.beside += all.contents[content].len();
+                                files.insert(file, content);
+                                content
+                            }
+                        }
+                    }
                 },
             };
+            let bytes = &all.contents[content];
             if bytes.len() < buffer.length() {
                 let (index, has, wants) = (buffer.index(), bytes.len(), buffer.length());
                 let problem = format!("buffer {index} is truncated: it has {has} bytes of {wants}");
                 return Err((problem, "copy the whole file"));
             }
-            buffers.push(bytes);
+            all.buffers.push(content);
         }
-        Ok(Buffers { buffers })
+        Ok(all)
+    }
+
+    fn add(&mut self, content: Cow<'a, [u8]>) -> usize {
+        self.contents.push(content);
+        self.contents.len() - 1
     }
 
     /// The bytes of a view.
     pub fn view(&self, view: &View) -> Result<&[u8], Fault> {
-        let bytes = &self.buffers[view.buffer().index()];
+        let bytes = &self.contents[self.buffers[view.buffer().index()]];
         let end = view.offset().checked_add(view.length());
         end.and_then(|end| bytes.get(view.offset()..end))
             .ok_or_else(|| (format!("buffer view {} reaches beyond its buffer", view.index()), "export the file again"))
     }
 
-    /// Bytes of all buffers.
+    /// Bytes of all buffers, each file counted once.
     pub fn total(&self) -> usize {
-        self.buffers.iter().map(|bytes| bytes.len()).sum()
+        self.contents.iter().map(|bytes| bytes.len()).sum()
+    }
+
+    /// Bytes of the files beside the scene's own.
+    pub fn beside(&self) -> usize {
+        self.beside
     }
 }
 
@@ -67,8 +96,8 @@ fn decode(data: &str) -> Result<Vec<u8>, Fault> {
         .map_err(|e| (format!("a buffer's data URI is broken: {e}"), MEND))
 }
 
-/// A file beside the scene.
-fn file(path: &Path, uri: &str, options: &Options) -> Result<Vec<u8>, Fault> {
+/// A file beside the scene: its name for messages, and where it is.
+fn place(path: &Path, uri: &str, options: &Options) -> Result<(String, PathBuf), Fault> {
     let name = percent_encoding::percent_decode_str(uri).decode_utf8_lossy();
     let shown: String = name.chars().filter(|c| !c.is_control()).take(80).collect();
     if name.contains("://") {
@@ -80,6 +109,12 @@ fn file(path: &Path, uri: &str, options: &Options) -> Result<Vec<u8>, Fault> {
         return Err((problem, "allow it with the option outside=yes"));
     }
     let file = path.parent().unwrap_or(Path::new("")).join(&*name);
-    let content = crate::scene::read_file(&file);
+    let file = file.canonicalize().unwrap_or(file);
+    Ok((shown, file))
+}
+
+/// That file's bytes.
+fn read(shown: &str, file: &Path) -> Result<Vec<u8>, Fault> {
+    let content = crate::scene::read_file(file);
     content.map_err(|_| (format!("buffer {shown} cannot be read"), "put it beside the scene's file"))
 }

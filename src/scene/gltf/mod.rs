@@ -16,6 +16,7 @@ mod buffers;
 mod material;
 mod walk;
 
+use super::mesh_builder::Limits;
 use super::{Options, Scene};
 use crate::error::{Error, Result};
 use buffers::Buffers;
@@ -40,12 +41,16 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
 pub fn read_bytes(path: &Path, bytes: &[u8], options: &Options) -> Result<Scene> {
     let at = |(problem, mend): Fault| Error::file(path, None, problem, mend);
     length_has_header(bytes).map_err(at)?;
+    let mut limits = Limits::default();
+    limits.read(bytes.len());
+    document_fits(bytes, &mut limits).map_err(at)?;
     let unchecked = gltf::Gltf::from_slice_without_validation(bytes).map_err(|error| refusal(path, error))?;
     let json = unchecked.document.into_json();
     positions_exist(&json).map_err(at)?;
     let document = gltf::Document::from_json(json).map_err(|error| refusal(path, error))?;
     let buffers = Buffers::load(path, &document, unchecked.blob.as_deref(), options).map_err(at)?;
-    let mut walk = Walk::new(&document, &buffers);
+    limits.read(buffers.beside());
+    let mut walk = Walk::new(&document, &buffers, limits);
     walk.scene().map_err(at)?;
     walk.finish().map_err(at)
 }
@@ -59,6 +64,30 @@ fn length_has_header(bytes: &[u8]) -> Result<(), Fault> {
         }
         _ => Ok(()),
     }
+}
+
+/// The first chunk of a GLB, behind the headers of file and chunk.
+fn json_chunk(bytes: &[u8]) -> &[u8] {
+    let length = bytes.get(12..16).map_or(0, |b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize);
+    let behind = bytes.get(20..).unwrap_or_default();
+    &behind[..length.min(behind.len())]
+}
+
+/// Memory that the crate (1.4.1) takes for an object of the JSON, nodes being the largest that may be as short as `{}`, and for
+/// a string, by its two marks; both while the vectors that hold them grow.
+const PER_OBJECT: usize = 704;
+const PER_MARK: usize = 36;
+
+/// Holds the document against what the file may take of memory, before the crate makes it.
+fn document_fits(bytes: &[u8], limits: &mut Limits) -> Result<(), Fault> {
+    let json = if bytes.starts_with(b"glTF") { json_chunk(bytes) } else { bytes };
+    let count = |byte| json.iter().filter(|&&b| b == byte).count();
+    let needed = count(b'{') * PER_OBJECT + count(b'"') * PER_MARK;
+    // What is charged counts twice, for vectors that grow
+    limits.grow(needed / 2).map_err(|_| {
+        let problem = format!("the JSON's {} objects need {} MiB of memory", count(b'{'), needed >> 20);
+        (problem, "it may take 16 times the file and 64 MiB: export fewer nodes")
+    })
 }
 
 /// The crate's validation (1.4.1) looks into the accessor of a primitive's positions before it has checked that there is

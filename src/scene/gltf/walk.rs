@@ -3,6 +3,8 @@
 use super::buffers::Buffers;
 use super::{Fault, accessor, material};
 use crate::math::Vertex;
+use crate::scene::mesh_builder::Limits;
+use crate::scene::text;
 use crate::scene::{Light, MAX_ELEMENTS, Material, Pose, Scene, SceneCamera, Triangle, lamps, normals};
 use glam::{DMat3, DMat4, DVec3, Mat4, Vec3};
 use gltf::khr_lights_punctual::Kind;
@@ -25,11 +27,12 @@ pub struct Walk<'a> {
     orthographic: bool,
     deformed: bool,
     repaired: usize,
+    limits: Limits,
 }
 
 impl<'a> Walk<'a> {
     /// Begins with the materials.
-    pub fn new(document: &'a Document, buffers: &'a Buffers<'a>) -> Walk<'a> {
+    pub fn new(document: &'a Document, buffers: &'a Buffers<'a>, limits: Limits) -> Walk<'a> {
         let (materials, emission): (Vec<Material>, Vec<Vec3>) =
             document.materials().map(|m| material::convert(&m)).unzip();
         let mut scene = Scene { materials, ..Scene::default() };
@@ -48,11 +51,14 @@ impl<'a> Walk<'a> {
             orthographic: false,
             deformed: false,
             repaired: 0,
+            limits,
         }
     }
 
     /// Goes over all nodes of the scene, parents before children, in file order.
     pub fn scene(&mut self) -> Result<(), Fault> {
+        // What the buffers take beside the file's own bytes
+        self.limits.grow(self.buffers.total()).map_err(too_much)?;
         let scene = self.document.default_scene().or_else(|| self.document.scenes().next());
         let mut stack: Vec<(Node, DMat4)> = match scene {
             Some(scene) => scene.nodes().map(|node| (node, DMat4::IDENTITY)).collect(),
@@ -131,6 +137,11 @@ impl<'a> Walk<'a> {
         let Some(positions) = primitive.get(&gltf::Semantic::Positions) else {
             return Err(("a primitive has no positions".into(), "export the file again"));
         };
+        accessor::check(&positions, self.buffers)?;
+        if let Some(indices) = primitive.indices() {
+            accessor::check_indices(&indices, self.buffers)?;
+        }
+        self.hold(primitive, positions.count())?;
         let positions = accessor::vectors(&positions, self.buffers)?;
         let given = match primitive.get(&gltf::Semantic::Normals) {
             Some(normals) => Some(accessor::vectors(&normals, self.buffers)?),
@@ -186,6 +197,25 @@ impl<'a> Walk<'a> {
         Ok(())
     }
 
+    /// Holds what a primitive needs of memory against what its file may take: every node that shows a mesh has a copy.
+    fn hold(&mut self, primitive: &Primitive, positions: usize) -> Result<(), Fault> {
+        let corners = primitive.indices().map_or(positions, |indices| indices.count());
+        let triangles = if primitive.mode() == Mode::Triangles { corners / 3 } else { corners };
+        let flat = primitive.get(&gltf::Semantic::Normals).is_none();
+        let vertices = if flat { triangles.saturating_mul(3) } else { positions };
+        // Indices, and triangles three times: of the file, of this primitive, with their material
+        let triangles_now = triangles.saturating_mul(2 * size_of::<[u32; 3]>() + size_of::<Triangle>());
+        // Vertices with and without their normals computed, and what must be computed
+        let vertices_now = vertices.saturating_mul(2 * size_of::<Vertex>() + size_of::<usize>());
+        let read = positions.saturating_mul(2 * size_of::<Vec3>()).saturating_add(corners.saturating_mul(4));
+        let now = triangles_now.saturating_add(vertices_now).saturating_add(read);
+        self.limits.passing(now).map_err(too_much)?;
+        let shines = primitive.material().index().is_some_and(|i| self.emission[i] != Vec3::ZERO);
+        let lamps = if shines { triangles.saturating_mul(lamps::BYTES) } else { 0 };
+        let kept = vertices * size_of::<Vertex>() + triangles * size_of::<Triangle>();
+        self.limits.grow(kept.saturating_add(lamps)).map_err(too_much)
+    }
+
     fn material(&mut self, primitive: &Primitive) -> u32 {
         match primitive.material().index() {
             Some(index) => index as u32,
@@ -235,6 +265,11 @@ impl<'a> Walk<'a> {
             self.scene.lights = lamps::lights(&self.scene.vertices, &self.scene.triangles, &self.emission);
         }
     }
+}
+
+/// The file needs more memory than it may take.
+fn too_much(fault: text::Fault) -> Fault {
+    (fault.problem, "do many nodes show the same mesh? Show it less often, or simplify it")
 }
 
 /// Triangles of a list, strip or fan, all wound the same way; an incomplete one at the end is dropped.

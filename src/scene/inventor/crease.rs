@@ -68,16 +68,17 @@ impl Creased {
         Ok(Creased { cosine: angle.min(std::f64::consts::PI).cos(), normals, places, faces: at, begin })
     }
 
-    /// The normal of a corner for its face, both by their places in the order of visits; zero where there is none.
-    pub fn normal(&self, corner: usize, face: usize) -> DVec3 {
+    /// The normal of a corner for its face, both by their places in the order of visits; zero where there is none. Also the
+    /// number of faces that were looked at.
+    pub fn normal(&self, corner: usize, face: usize) -> (DVec3, usize) {
         let own = self.normals[face];
         let place = self.places[corner] as usize;
         let around = &self.faces[self.begin[place] as usize..self.begin[place + 1] as usize];
         if around.len() > MOST {
-            return own;
+            return (own, 0);
         }
         let smooth = |normal: &DVec3| normal.dot(own) >= self.cosine;
         let sum: DVec3 = around.iter().map(|&face| self.normals[face as usize]).filter(smooth).sum();
-        if sum == DVec3::ZERO { own } else { sum }
+        (if sum == DVec3::ZERO { own } else { sum }, around.len())
     }
 }

@@ -131,6 +131,8 @@ impl<'t> Faces<'t> {
                 if needed > self.coordinates.len() {
                     return Err(self.too_few(needed));
                 }
+                // Of one column, or none, any number of rows may be had for nothing
+                let rows = if columns > 1 { rows } else { 0 };
                 let corner = |row: usize, column: usize| self.plain(self.start + row * columns + column);
                 for row in 1..rows {
                     for column in 1..columns {

@@ -41,7 +41,6 @@ use super::mesh_builder::MeshBuilder;
 use super::text::{Fault, Includes, Trouble};
 use super::{Options, Scene, SceneCamera};
 use crate::error::{Error, Result};
-use glam::DVec3;
 use state::State;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -55,6 +54,9 @@ pub const SEGMENTS: u32 = 24;
 const WORK: usize = 4_000_000;
 const WORK_PER_BYTE: usize = 16;
 
+/// Faces around a corner that are looked at in the time of one value.
+const FACES_PER_VALUE: usize = 8;
+
 struct Reader {
     includes: Includes,
     mesh: MeshBuilder,
@@ -63,7 +65,7 @@ struct Reader {
     trees: HashMap<PathBuf, Rc<(Tree, f64)>>,
     camera: Option<SceneCamera>,
     /// Directions of lights that are far away, and their colours.
-    suns: Vec<(DVec3, DVec3)>,
+    suns: Vec<view::Sun>,
     /// Nodes that are being walked through, from the outermost inwards.
     depth: usize,
     /// Values gone through.
@@ -122,10 +124,26 @@ impl Reader {
 
     /// Counts values that are gone through.
     fn pass(&mut self, values: usize) -> Result<(), Fault> {
-        self.work += values;
-        if self.work > WORK + WORK_PER_BYTE * self.includes.bytes() {
+        if self.work_is_too_much(values) {
             return Err(Fault::new(None, "copies of copies never end", "use a node less often"));
         }
         Ok(())
+    }
+
+    /// Counts the faces that a normal was made of.
+    fn smooth(&mut self, faces: usize) -> Result<(), Fault> {
+        if self.work_is_too_much(faces / FACES_PER_VALUE) {
+            return Err(Fault::new(
+                None,
+                "too many smooth faces meet in its corners",
+                "give normals, or no creaseAngle",
+            ));
+        }
+        Ok(())
+    }
+
+    fn work_is_too_much(&mut self, more: usize) -> bool {
+        self.work = self.work.saturating_add(more);
+        self.work > WORK + WORK_PER_BYTE * self.includes.bytes()
     }
 }

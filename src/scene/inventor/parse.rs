@@ -171,12 +171,13 @@ impl<'a> Parser<'a, '_> {
             self.connection()?;
         }
         if let (Some(name), Some(values)) = (known, values) {
-            node.cost += match &values {
+            // Nodes of nodes that are used twice may cost any number
+            node.cost = node.cost.saturating_add(match &values {
                 Values::Numbers(numbers) => numbers.len(),
                 Values::Words(words) => words.len(),
                 Values::Node(inner) => self.tree.node(*inner).cost,
                 Values::Ignored => 0,
-            };
+            });
             if let Values::Node(inner) = values {
                 self.adopt(node, inner)?;
             }

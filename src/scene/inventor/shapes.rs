@@ -141,7 +141,11 @@ impl Reader {
             for (i, corner) in face.corners.iter().enumerate() {
                 match &normals {
                     Normals::Flat => break,
-                    Normals::Made(made) => directions.push(made.normal(visited + i, face.visit)),
+                    Normals::Made(made) => {
+                        let (normal, looked_at) = made.normal(visited + i, face.visit);
+                        self.smooth(looked_at)?;
+                        directions.push(normal);
+                    }
                     Normals::Given(choice) => {
                         let index = choice.index(&face, corner)?;
                         let normal = state.normals.get(3 * index..3 * index + 3);

@@ -12,6 +12,9 @@ use std::f64::consts::FRAC_PI_4;
 /// How many diagonals of the scene a directional light is away.
 const FAR: f32 = 10.0;
 
+/// Direction and colour of a light that is far away.
+pub type Sun = (DVec3, DVec3);
+
 impl Reader {
     /// A light.
     pub(super) fn light(&mut self, node: &Node, state: &State) -> Result<(), Fault> {
@@ -21,7 +24,7 @@ impl Reader {
         let colour = node.vector("color", DVec3::ONE)? * node.number("intensity", 1.0)?;
         if node.kind == Kind::DirectionalLight {
             let direction = state.transform.transform_vector3(node.vector("direction", DVec3::NEG_Z)?);
-            self.mesh.charge(size_of::<[DVec3; 2]>())?;
+            self.mesh.charge(size_of::<Sun>() + size_of::<Light>())?;
             self.suns.push((direction, colour));
             return Ok(());
         }
@@ -53,8 +56,9 @@ impl Reader {
 }
 
 /// Adds the directional lights, far away from all there is.
-pub fn shine(scene: &mut Scene, suns: &[(DVec3, DVec3)]) {
+pub fn shine(scene: &mut Scene, suns: &[Sun]) {
     let bounds = scene.bounds();
+    let mut dark = 0;
     for (direction, colour) in suns {
         let direction = direction.normalize_or_zero().as_vec3();
         let position = bounds.center() - direction * bounds.diagonal() * FAR;
@@ -62,7 +66,10 @@ pub fn shine(scene: &mut Scene, suns: &[(DVec3, DVec3)]) {
         if direction != glam::Vec3::ZERO && light.position.is_finite() && light.colour.is_finite() {
             scene.lights.push(light);
         } else {
-            scene.warnings.push("a directional light that shines nowhere is left out".into());
+            dark += 1;
         }
+    }
+    if dark > 0 {
+        scene.warnings.push(format!("directional lights that shine nowhere left out: {dark}"));
     }
 }

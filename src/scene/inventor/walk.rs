@@ -130,14 +130,19 @@ impl Reader {
         for (axis, (number, separation, default)) in axes.into_iter().enumerate() {
             counts[axis] = node.integer(number, 1)?;
             steps[axis] = node.vector(separation, default)?;
-            let last = steps[axis] * (counts[axis] - 1).max(0) as f64;
+            let last = steps[axis] * counts[axis].saturating_sub(1).max(0) as f64;
             match node.word("origin")? {
                 Some(b"CENTER") => start -= last / 2.0,
                 Some(b"LAST") => start -= last,
                 _ => {}
             }
         }
+        // Of nothing, any number of rows is gone through in no time
+        if counts[0] < 1 {
+            return Ok(());
+        }
         for k in 0..counts[2] {
+            self.pass(1)?;
             for j in 0..counts[1] {
                 for i in 0..counts[0] {
                     self.pass(1)?;

@@ -29,8 +29,13 @@ impl Limits {
     /// Something of this size is about to be stored for good. A vector that grows takes twice that.
     #[inline]
     pub fn grow(&mut self, bytes: usize) -> Result<(), Fault> {
-        self.used += 2 * bytes;
+        self.used = self.used.saturating_add(bytes.saturating_mul(2));
         self.hold(0)
+    }
+
+    /// Something of this size, which was to be stored, is gone.
+    pub fn shrink(&mut self, bytes: usize) {
+        self.used = self.used.saturating_sub(2 * bytes);
     }
 
     /// Holds that many bytes, which are stored for a while, against what is left.

@@ -15,7 +15,7 @@ use super::{Light, Material, Scene, Triangle};
 use crate::math::Vertex;
 use foldhash::fast::RandomState;
 use glam::{DAffine3, DMat3, DVec3, Vec3};
-use limits::Limits;
+pub use limits::Limits;
 use shared::Shared;
 use std::cell::LazyCell;
 use std::collections::HashMap;
@@ -92,6 +92,7 @@ impl MeshBuilder {
     /// Tells the size of a file that is being read: the mesh may grow with it. An included file counts once.
     pub fn read(&mut self, bytes: usize) {
         self.limits.read(bytes);
+        self.triangulator.read(bytes);
     }
 
     /// Holds memory that a reader keeps of the file beside the mesh against the same limits.
@@ -100,6 +101,11 @@ impl MeshBuilder {
     /// It is more than the file may take.
     pub fn charge(&mut self, bytes: usize) -> Result<(), Fault> {
         self.limits.grow(bytes)
+    }
+
+    /// Gives back memory that was charged.
+    pub fn discharge(&mut self, bytes: usize) {
+        self.limits.shrink(bytes);
     }
 
     /// The same for memory that a reader is about to take and will soon give back.

@@ -86,6 +86,9 @@ impl Chromaticity {
     }
 }
 
+/// Wavelengths at which a spectrum is looked at.
+pub const SAMPLES: usize = 81;
+
 /// The colour of a spectrum, by the CIE's colour matching functions as sums of Gaussian lobes (Wyman, Sloan and Shirley
 /// 2013).
 fn integrate(spectrum: impl Fn(f64) -> f64) -> Option<Chromaticity> {
@@ -93,7 +96,7 @@ fn integrate(spectrum: impl Fn(f64) -> f64) -> Option<Chromaticity> {
         let t = (wavelength - center) * if wavelength < center { below } else { above };
         (-0.5 * t * t).exp()
     };
-    let xyz = (380..=780).step_by(5).map(f64::from).fold(DVec3::ZERO, |sum, w| {
+    let xyz = (0..SAMPLES).map(|i| 380.0 + 5.0 * i as f64).fold(DVec3::ZERO, |sum, w| {
         let x = 1.056 * lobe(w, 599.8, 0.0264, 0.0323) + 0.362 * lobe(w, 442.0, 0.0624, 0.0374)
             - 0.065 * lobe(w, 501.1, 0.0490, 0.0382);
         let y = 0.821 * lobe(w, 568.8, 0.0213, 0.0247) + 0.286 * lobe(w, 530.9, 0.0613, 0.0322);

@@ -1,13 +1,16 @@
 //! Entities one after another: contexts, materials, transforms, includes.
 
-use super::colour::Chromaticity;
+use super::colour::{Chromaticity, SAMPLES};
 use super::materials::Share;
-use super::transform::{number_of, places};
+use super::transform::{Places, number_of};
 use super::{MAX_DEPTH, Reader};
 use crate::scene::mesh_builder::unit;
 use crate::scene::text::{Fault, Trouble, Words, quote_bytes};
 use glam::DVec3;
 use std::path::Path;
+
+/// Bytes that are gone through in the time of a word.
+const BYTES_PER_WORD: usize = 16;
 
 /// The words of an entity that follow its name, in place of those before: to the end of the line, and of the next if a
 /// backslash ends it.
@@ -81,19 +84,24 @@ impl Reader {
 
     /// `xf`: goes through its lines once for each place.
     fn transformed(&mut self, path: &Path, words: &mut Words, arguments: &[&[u8]], line: usize) -> Result<(), Trouble> {
-        let places = places(arguments).map_err(|fault| fault.at(line))?;
+        let places = Places::new(arguments).map_err(|fault| fault.at(line))?;
+        // They stay while others are made inside
+        self.mesh.charge(places.bytes()).map_err(|fault| fault.at(line))?;
         let start = words.clone();
         let mut end = None;
-        for place in &places {
+        for place in places.all() {
             *words = start.clone();
             self.pass(1).map_err(|fault| fault.at(line))?;
-            self.mesh.push(*place).map_err(|fault| fault.at(line))?;
+            self.mesh.push(place).map_err(|fault| fault.at(line))?;
             self.emitters.new_group();
             self.block(path, words, Some(line))?;
+            // Comments, blanks and what is passed over take time as well
+            self.pass((start.left() - words.left()) / BYTES_PER_WORD).map_err(|fault| fault.at(line))?;
             self.mesh.pop();
             self.emitters.new_group();
             end = Some(words.clone());
         }
+        self.mesh.discharge(places.bytes());
         if end.is_none() {
             // An array of nothing: its lines are passed over
             let mut open = 1;
@@ -105,6 +113,7 @@ impl Reader {
                 }
                 words.skip_line();
             }
+            self.pass((start.left() - words.left()) / BYTES_PER_WORD).map_err(|fault| fault.at(line))?;
         }
         Ok(())
     }
@@ -114,7 +123,9 @@ impl Reader {
         let Some((name, transform)) = arguments.split_first() else {
             return Err(Fault::new(None, "`i` names no file", "").into());
         };
-        for place in places(transform)? {
+        let places = Places::new(transform)?;
+        self.mesh.charge(places.bytes())?;
+        for place in places.all() {
             let known = self.includes.bytes();
             let (path, bytes) = self.includes.open(path, name)?;
             self.mesh.read(self.includes.bytes() - known);
@@ -125,6 +136,7 @@ impl Reader {
             self.emitters.new_group();
             self.includes.close();
         }
+        self.mesh.discharge(places.bytes());
         Ok(())
     }
 
@@ -155,6 +167,9 @@ impl Reader {
     }
 
     fn colour(&mut self, entity: &[u8], arguments: &[&[u8]]) -> Result<(), Fault> {
+        if matches!(entity, b"cspec" | b"cct") {
+            self.pass(SAMPLES)?;
+        }
         let found = match entity {
             b"cxy" => {
                 let [x, y] = numbers(arguments)?;

@@ -23,62 +23,100 @@ struct Stretch {
     array: bool,
 }
 
-/// The places in which things are to be put: one without arrays.
-pub fn places(arguments: &[&[u8]]) -> Result<Vec<DAffine3>, Fault> {
-    let mut stretches = vec![Stretch { transform: DAffine3::IDENTITY, times: 1, array: false }];
-    let mut rest = arguments.iter();
-    while let Some(&option) = rest.next() {
-        let mut number = || -> Result<f64, Fault> {
-            let end = || Fault::new(None, format!("{} needs more numbers", quote_bytes(option)), "");
-            number_of(rest.next().ok_or_else(end)?)
-        };
-        let step = match option {
-            b"-t" => DAffine3::from_translation(DVec3::new(number()?, number()?, number()?)),
-            b"-rx" => DAffine3::from_mat3(DMat3::from_rotation_x(number()?.to_radians())),
-            b"-ry" => DAffine3::from_mat3(DMat3::from_rotation_y(number()?.to_radians())),
-            b"-rz" => DAffine3::from_mat3(DMat3::from_rotation_z(number()?.to_radians())),
-            b"-s" => DAffine3::from_scale(DVec3::splat(number()?)),
-            b"-mx" => DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0)),
-            b"-my" => DAffine3::from_scale(DVec3::new(1.0, -1.0, 1.0)),
-            b"-mz" => DAffine3::from_scale(DVec3::new(1.0, 1.0, -1.0)),
-            b"-a" | b"-i" => {
-                let count = number()?;
-                if !(count >= 0.0 && count <= MAX_COPIES as f64 && count.fract() == 0.0) {
-                    let problem = format!("{} {count}: not a number of copies", quote_bytes(option));
-                    return Err(Fault::new(None, problem, format!("give 0 to {MAX_COPIES}")));
+/// The places in which things are to be put.
+pub struct Places {
+    /// No array among them is of one copy: it would leave all as it is. Between two arrays, and before the first and behind
+    /// the last, there is at most one stretch that is none. So there are few of them, however long the line is.
+    stretches: Vec<Stretch>,
+    count: usize,
+}
+
+impl Places {
+    /// Reads what follows `xf` or an include's name: one place without arrays.
+    pub fn new(arguments: &[&[u8]]) -> Result<Places, Fault> {
+        let mut places = Places { stretches: Vec::new(), count: 1 };
+        let mut stretch = Stretch { transform: DAffine3::IDENTITY, times: 1, array: false };
+        let mut rest = arguments.iter();
+        while let Some(&option) = rest.next() {
+            let mut number = || -> Result<f64, Fault> {
+                let end = || Fault::new(None, format!("{} needs more numbers", quote_bytes(option)), "");
+                number_of(rest.next().ok_or_else(end)?)
+            };
+            let step = match option {
+                b"-t" => DAffine3::from_translation(DVec3::new(number()?, number()?, number()?)),
+                b"-rx" => DAffine3::from_mat3(DMat3::from_rotation_x(number()?.to_radians())),
+                b"-ry" => DAffine3::from_mat3(DMat3::from_rotation_y(number()?.to_radians())),
+                b"-rz" => DAffine3::from_mat3(DMat3::from_rotation_z(number()?.to_radians())),
+                b"-s" => DAffine3::from_scale(DVec3::splat(number()?)),
+                b"-mx" => DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0)),
+                b"-my" => DAffine3::from_scale(DVec3::new(1.0, -1.0, 1.0)),
+                b"-mz" => DAffine3::from_scale(DVec3::new(1.0, 1.0, -1.0)),
+                b"-a" | b"-i" => {
+                    let count = number()?;
+                    if !(count >= 0.0 && count <= MAX_COPIES as f64 && count.fract() == 0.0) {
+                        let problem = format!("{} {count}: not a number of copies", quote_bytes(option));
+                        return Err(Fault::new(None, problem, format!("give 0 to {MAX_COPIES}")));
+                    }
+                    places.add(stretch)?;
+                    stretch = Stretch { transform: DAffine3::IDENTITY, times: count as usize, array: option == b"-a" };
+                    continue;
                 }
-                let (times, array) = (count as usize, option == b"-a");
-                stretches.push(Stretch { transform: DAffine3::IDENTITY, times, array });
-                continue;
-            }
-            other => {
-                let mend = "-t, -rx, -ry, -rz, -s, -mx, -my, -mz, -i and -a";
-                return Err(Fault::new(None, format!("{} is no part of a transform", quote_bytes(other)), mend));
-            }
-        };
-        if let Some(stretch) = stretches.last_mut() {
+                other => {
+                    let mend = "-t, -rx, -ry, -rz, -s, -mx, -my, -mz, -i and -a";
+                    return Err(Fault::new(None, format!("{} is no part of a transform", quote_bytes(other)), mend));
+                }
+            };
             stretch.transform = step * stretch.transform;
         }
+        places.add(stretch)?;
+        Ok(places)
     }
-    let mut places = vec![DAffine3::IDENTITY];
-    for Stretch { transform, times, array } in stretches {
-        if array && places.len().saturating_mul(times) > MAX_COPIES {
-            return Err(Fault::new(None, format!("more than {MAX_COPIES} copies"), "repeat less"));
-        }
+
+    fn add(&mut self, Stretch { transform, times, array }: Stretch) -> Result<(), Fault> {
         if array {
-            let mut all = Vec::with_capacity(places.len() * times);
-            for _ in 0..times {
-                all.extend_from_slice(&places);
+            self.count = self.count.saturating_mul(times);
+            if self.count > MAX_COPIES {
+                return Err(Fault::new(None, format!("more than {MAX_COPIES} copies"), "repeat less"));
+            }
+            if times != 1 {
+                self.stretches.push(Stretch { transform, times, array });
+            }
+            return Ok(());
+        }
+        // Squared and multiplied: many repetitions are a few steps
+        let power = power(transform, times);
+        match self.stretches.last_mut().filter(|last| !last.array) {
+            Some(last) => last.transform = power * last.transform,
+            None => self.stretches.push(Stretch { transform: power, times: 1, array }),
+        }
+        Ok(())
+    }
+
+    /// Memory that they take.
+    pub fn bytes(&self) -> usize {
+        self.count * size_of::<DAffine3>()
+    }
+
+    /// All of them, the first array's copies nearest to each other.
+    pub fn all(&self) -> Vec<DAffine3> {
+        if self.count == 0 {
+            return Vec::new();
+        }
+        let mut places = vec![DAffine3::IDENTITY];
+        for &Stretch { transform, times, array } in &self.stretches {
+            if array {
+                let mut all = Vec::with_capacity(places.len() * times);
+                for _ in 0..times {
+                    all.extend_from_slice(&places);
+                    places.iter_mut().for_each(|place| *place = transform * *place);
+                }
+                places = all;
+            } else {
                 places.iter_mut().for_each(|place| *place = transform * *place);
             }
-            places = all;
-        } else {
-            // Squared and multiplied: many repetitions are a few steps
-            let power = power(transform, times);
-            places.iter_mut().for_each(|place| *place = power * *place);
         }
+        places
     }
-    Ok(places)
 }
 
 fn power(mut base: DAffine3, mut exponent: usize) -> DAffine3 {
@@ -100,7 +138,7 @@ mod tests {
     fn origins(text: &str) -> Vec<[i64; 3]> {
         let words: Vec<&[u8]> = text.split_ascii_whitespace().map(str::as_bytes).collect();
         let round = |v: DVec3| v.to_array().map(|x| (x * 1000.0).round() as i64);
-        places(&words).unwrap().iter().map(|place| round(place.transform_point3(DVec3::X))).collect()
+        Places::new(&words).unwrap().all().iter().map(|place| round(place.transform_point3(DVec3::X))).collect()
     }
 
     #[test]
@@ -120,14 +158,22 @@ mod tests {
             origins("-t 1 0 0 -a 2 -t 0 1 0 -a 2 -rz 180 -i 1 -t 0 0 5"),
             [[2000, 0, 5000], [2000, 1000, 5000], [-2000, 0, 5000], [-2000, -1000, 5000]]
         );
-        assert!(origins("-a 0 -t 1 0 0").is_empty());
+        assert!(origins("-a 0 -t 1 0 0").is_empty() && origins("-a 5 -t 1 0 0 -a 0").is_empty());
+    }
+
+    #[test]
+    fn a_long_line_is_few_stretches() {
+        let line = "-a 1 -t 1 0 0 -i 1 -mx ".repeat(1001);
+        let words: Vec<&[u8]> = line.split_ascii_whitespace().map(str::as_bytes).collect();
+        assert_eq!(Places::new(&words).unwrap().stretches.len(), 1);
+        assert_eq!(origins(&line), [[-1000, 0, 0]], "mirrored an odd number of times, moved never");
     }
 
     #[test]
     fn nonsense_is_refused() {
         for text in ["-t 1 0", "-x 1", "-a 1.5", "-a -1", "-a 1e9", "-a 1000 -mx -a 101", "-s nan", "1 0 0", "-i 2e6"] {
             let words: Vec<&[u8]> = text.split_ascii_whitespace().map(str::as_bytes).collect();
-            assert!(places(&words).is_err(), "{text}");
+            assert!(Places::new(&words).is_err(), "{text}");
         }
     }
 }

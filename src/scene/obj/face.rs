@@ -3,11 +3,15 @@
 use super::Fault;
 use super::lines::{Lines, printable};
 use crate::scene::Triangle;
+use crate::scene::lamps;
+use crate::scene::mesh_builder::Limits;
 use crate::scene::polygon::{Triangulator, newell};
+use foldhash::fast::RandomState;
 use glam::{DVec3, Vec3};
+use std::collections::HashMap;
 
 /// What makes two corners at the same position one vertex.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Key {
     /// Index into [`Faces::positions`].
     pub position: u32,
@@ -24,7 +28,7 @@ impl Key {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Normal {
     /// The file's.
     Given(u32),
@@ -57,6 +61,22 @@ impl Smoothing {
 /// The end of a chain.
 const NONE: u32 = u32::MAX;
 
+/// Most vertices in a chain: further ones at its position are found by their key. Hardly any position has so many, and a
+/// chain is the faster of the two.
+const LONGEST: usize = 24;
+
+/// Memory, while vectors grow and at the end: per position and normal of the file; per vertex, which has a key, a link and
+/// finally its numbers twice; per vertex that is found by its key; per triangle; per corner of the present face.
+const PER_POSITION: usize = 32;
+const PER_NORMAL: usize = 24;
+const PER_VERTEX: usize = 112;
+const PER_CROWDED: usize = 64;
+const PER_TRIANGLE: usize = 32;
+const PER_CORNER: usize = 112;
+
+/// Corners after which a face's memory is looked at.
+const MANY_CORNERS: usize = 4096;
+
 /// What has been read of vertices and faces.
 pub struct Faces {
     /// `v`.
@@ -69,6 +89,8 @@ pub struct Faces {
     next: Vec<u32>,
     /// The first vertex at a position.
     first: Vec<u32>,
+    /// Vertices that no chain has room for.
+    crowded: HashMap<Key, u32, RandomState>,
     /// In file order.
     pub triangles: Vec<Triangle>,
     /// The current material.
@@ -81,6 +103,10 @@ pub struct Faces {
     corners: Vec<u32>,
     points: Vec<DVec3>,
     triangulator: Triangulator,
+    /// What the file may take of memory.
+    pub limits: Limits,
+    /// Triangles that shine.
+    pub shining: usize,
 }
 
 impl Default for Faces {
@@ -91,6 +117,7 @@ impl Default for Faces {
             keys: Vec::new(),
             next: Vec::new(),
             first: Vec::new(),
+            crowded: HashMap::default(),
             triangles: Vec::new(),
             material: None,
             small: 0,
@@ -99,11 +126,19 @@ impl Default for Faces {
             corners: Vec::new(),
             points: Vec::new(),
             triangulator: Triangulator::default(),
+            limits: Limits::default(),
+            shining: 0,
         }
     }
 }
 
 impl Faces {
+    /// Tells the size of a file that is being read: what may be made of it grows.
+    pub fn read(&mut self, bytes: usize) {
+        self.limits.read(bytes);
+        self.triangulator.read(bytes);
+    }
+
     /// `s`.
     pub fn smoothing(&mut self, smoothing: Smoothing) {
         self.smoothing = smoothing;
@@ -122,6 +157,9 @@ impl Faces {
             };
             let vertex = self.vertex(Key { position, normal });
             self.corners.push(vertex);
+            if self.corners.len().is_multiple_of(MANY_CORNERS) {
+                self.hold(lines.line())?;
+            }
         }
         self.faces = self.faces.wrapping_add(1);
         let add = |a: u32, b: u32, c: u32| Triangle { vertices: [a, b, c], material };
@@ -140,20 +178,44 @@ impl Faces {
                 }
             }
         }
-        Ok(())
+        self.hold(lines.line())
+    }
+
+    /// Holds the memory that all of it takes against what the file may take.
+    #[inline]
+    fn hold(&self, line: usize) -> Result<(), Fault> {
+        let bytes = self.positions.len() * PER_POSITION
+            + self.normals.len() * PER_NORMAL
+            + self.keys.len() * PER_VERTEX
+            + self.crowded.len() * PER_CROWDED
+            + self.triangles.len() * PER_TRIANGLE
+            + self.shining * lamps::BYTES
+            + self.corners.len() * PER_CORNER;
+        let mend = "it has many faces of few vertices: store them another way, as in a binary PLY";
+        self.limits.passing(bytes).map_err(|fault| Fault::new(line, fault.problem, mend))
     }
 
     /// The vertex of that key, a new one if there is none yet.
     #[inline]
     fn vertex(&mut self, key: Key) -> u32 {
-        let mut at = self.first[key.position as usize];
+        let (mut at, mut length) = (self.first[key.position as usize], 0);
         while at != NONE {
             if self.keys[at as usize] == key {
                 return at;
             }
             at = self.next[at as usize];
+            length += 1;
         }
         let index = self.keys.len() as u32;
+        if length == LONGEST {
+            if let Some(&known) = self.crowded.get(&key) {
+                return known;
+            }
+            self.crowded.insert(key, index);
+            self.keys.push(key);
+            self.next.push(NONE);
+            return index;
+        }
         self.keys.push(key);
         self.next.push(std::mem::replace(&mut self.first[key.position as usize], index));
         index

@@ -16,14 +16,21 @@ mod face;
 mod lines;
 pub mod mtl;
 
+use super::mesh_builder::Warnings;
 use super::{Material, Options, Scene, lamps, normals};
 use crate::error::{Error, Result};
 use crate::math::Vertex;
 use face::{Faces, Smoothing};
 use glam::Vec3;
 use lines::Lines;
-use std::collections::{BTreeSet, HashMap};
-use std::path::{Component, Path};
+use std::collections::{BTreeSet, HashMap, HashSet};
+use std::path::{Component, Path, PathBuf};
+
+/// Names of each kind that warnings are to choose from.
+const NAMES: usize = 16;
+
+/// Memory per material, at most: itself and what it gives off in vectors that grow, its name in a table.
+const PER_MATERIAL: usize = 256;
 
 /// What is wrong at a line.
 #[derive(Debug)]
@@ -57,6 +64,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
 /// As [`read`].
 pub fn read_bytes(path: &Path, bytes: &[u8], options: &Options) -> Result<Scene> {
     let mut reader = Reader::new(path, options);
+    reader.faces.read(bytes.len());
     let mut lines = Lines::new(bytes);
     while let Some(keyword) = lines.keyword() {
         reader.line(keyword, &mut lines)?;
@@ -77,11 +85,13 @@ struct Reader<'a> {
     /// Colour that a material gives off, by its index.
     emission: Vec<Vec3>,
     names: HashMap<Vec<u8>, u32>,
+    /// Libraries that have been read.
+    libraries: HashSet<PathBuf>,
     /// Names of materials that no library has.
     unknown: BTreeSet<String>,
     /// Keywords that were passed over.
     ignored: BTreeSet<String>,
-    warnings: Vec<String>,
+    warnings: Warnings,
     textures: bool,
 }
 
@@ -94,9 +104,10 @@ impl<'a> Reader<'a> {
             materials: Vec::new(),
             emission: Vec::new(),
             names: HashMap::new(),
+            libraries: HashSet::new(),
             unknown: BTreeSet::new(),
             ignored: BTreeSet::new(),
-            warnings: Vec::new(),
+            warnings: Warnings::default(),
             textures: false,
         }
     }
@@ -106,8 +117,12 @@ impl<'a> Reader<'a> {
             b"v" => lines.vector("a vertex").map(|v| self.faces.positions.push(v)),
             b"vn" => lines.normal().map(|v| self.faces.normals.push(v)),
             b"f" | b"fo" => {
-                let material = self.material();
-                self.faces.face(lines, material)
+                let (material, before) = (self.material(), self.faces.triangles.len());
+                let read = self.faces.face(lines, material);
+                if self.emission[material as usize] != Vec3::ZERO {
+                    self.faces.shining += self.faces.triangles.len() - before;
+                }
+                read
             }
             b"vt" | b"vp" | b"g" | b"o" => Ok(()),
             b"s" => {
@@ -116,13 +131,12 @@ impl<'a> Reader<'a> {
                 Ok(())
             }
             b"usemtl" => {
-                let name = lines.rest().to_vec();
-                self.use_material(name);
-                Ok(())
+                let (line, name) = (lines.line(), lines.rest().to_vec());
+                self.use_material(name, line)
             }
             b"mtllib" => return self.libraries(lines),
             other => {
-                if self.ignored.len() < 16 {
+                if self.ignored.len() < NAMES {
                     self.ignored.insert(lines::printable(other));
                 }
                 Ok(())
@@ -142,15 +156,20 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn use_material(&mut self, name: Vec<u8>) {
+    fn use_material(&mut self, name: Vec<u8>, line: usize) -> Result<(), Fault> {
         let index = match self.names.get(&name) {
             Some(&index) => index,
             None => {
-                self.unknown.insert(lines::printable(&name));
+                if self.unknown.len() < NAMES {
+                    self.unknown.insert(lines::printable(&name));
+                }
+                let grown = self.faces.limits.grow((PER_MATERIAL + name.len()) / 2);
+                grown.map_err(|fault| Fault::new(line, fault.problem, "use fewer materials"))?;
                 self.add(name, Material::neutral(), Vec3::ZERO)
             }
         };
         self.faces.material = Some(index);
+        Ok(())
     }
 
     fn add(&mut self, name: Vec<u8>, material: Material, emission: Vec3) -> u32 {
@@ -178,10 +197,16 @@ impl<'a> Reader<'a> {
             }
             let path = folder.join(name);
             if !path.is_file() {
-                self.warnings.push(format!("material library {name} is not there: its materials are neutral grey"));
+                self.warnings.add(&format!("material library {name} is not there: its materials are neutral grey"));
                 continue;
             }
-            let library = mtl::parse(&super::read_file(&path)?).map_err(|fault| fault.of(&path))?;
+            // Read again, it would say nothing new
+            if !self.libraries.insert(path.canonicalize().unwrap_or_else(|_| path.clone())) {
+                continue;
+            }
+            let bytes = super::read_file(&path)?;
+            self.faces.read(bytes.len());
+            let library = mtl::parse(&bytes).map_err(|fault| fault.of(&path))?;
             self.textures |= library.textures;
             for (name, material, emission) in library.materials {
                 // The first of a name counts; later ones would change faces that are already there.
@@ -208,7 +233,7 @@ impl<'a> Reader<'a> {
         let lights = lamps::lights(&vertices, triangles, &self.emission);
         let mut scene = Scene { vertices, lights, materials: self.materials, ..Scene::default() };
         scene.triangles = self.faces.triangles;
-        scene.warnings = self.warnings;
+        scene.warnings = self.warnings.lines();
         let mut warn = |warning: String| scene.warnings.push(warning);
         let list = |names: &BTreeSet<String>| names.iter().take(8).cloned().collect::<Vec<_>>().join(", ");
         if bad > 0 {

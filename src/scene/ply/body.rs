@@ -3,9 +3,13 @@
 use super::header::{Element, Header, Kind};
 use super::source::{Bad, Source};
 use crate::math::Vertex;
+use crate::scene::mesh_builder::Limits;
 use crate::scene::text::{Fault, quote};
 use crate::scene::{MAX_ELEMENTS, Triangle};
 use glam::Vec3;
+
+/// Corners of a polygon from which on the memory of its triangles is looked at, every so many of them.
+const MANY: i64 = 4;
 
 /// What the body holds.
 #[derive(Default)]
@@ -15,6 +19,8 @@ pub struct Body {
     pub has_normals: bool,
     pub small_polygons: usize,
     pub bytes_after: usize,
+    /// What the file may take of memory.
+    limits: Limits,
 }
 
 /// Where the values of a vertex go: index of the property of x, y, z, nx, ny, nz.
@@ -35,6 +41,7 @@ pub fn read<S: Source>(
     }
     check_counts::<S>(header, length)?;
     let mut body = Body::default();
+    body.limits.read(length);
     for element in &header.elements {
         if std::ptr::eq(element, vertex) {
             read_vertices(element, &mut source, &mut body)?;
@@ -176,6 +183,7 @@ fn read_faces<S: Source>(
                 "repair the face or the vertex count",
             ),
             Trouble::TooMany => too_many(source.line(), body.triangles.len() as u64, "triangle"),
+            Trouble::Memory(problem) => Fault::new(source.line(), problem, "store polygons of fewer corners"),
         })?;
     }
     Ok(())
@@ -186,6 +194,17 @@ enum Trouble {
     Bad(Bad),
     Index(i64),
     TooMany,
+    Memory(String),
+}
+
+impl Body {
+    /// Holds what is read against what the file may take: a corner may be a single byte, its triangle is sixteen.
+    fn hold(&self, vertices: u64) -> Result<(), Trouble> {
+        // Normals may have to be made anew beside the old ones; a vector that grows is there in two sizes for a moment
+        let [vertices, triangles] = [vertices as usize * size_of::<Vertex>(), size_of_val(&*self.triangles)];
+        let bytes = 2 * vertices + 3 * triangles;
+        self.limits.passing(bytes).map_err(|fault| Trouble::Memory(fault.problem))
+    }
 }
 
 impl From<Bad> for Trouble {
@@ -222,10 +241,13 @@ fn read_face<S: Source>(
                     continue;
                 }
                 let (first, mut previous) = (next()?, next()?);
-                for _ in 2..corners {
+                for i in 2..corners {
                     let corner = next()?;
                     body.triangles.push(Triangle { vertices: [first, previous, corner], material: 0 });
                     previous = corner;
+                    if i % MANY == 0 {
+                        body.hold(vertices)?;
+                    }
                 }
                 if body.triangles.len() > MAX_ELEMENTS {
                     return Err(Trouble::TooMany);

@@ -116,6 +116,14 @@ impl Header {
     }
 }
 
+/// Most elements, and most properties of one: each is compared with all before it.
+const MOST: usize = 1000;
+
+#[cold]
+fn too_many(line: usize, what: &str) -> Fault {
+    Fault::new(Some(line), format!("more than {MOST} {what}"), "remove those that make no triangles")
+}
+
 /// Reads the header.
 pub fn parse(bytes: &[u8]) -> Result<Header, Fault> {
     if bytes.is_empty() {
@@ -151,6 +159,9 @@ pub fn parse(bytes: &[u8]) -> Result<Header, Fault> {
                         "write a whole number of 0 or more",
                     )
                 })?;
+                if elements.len() == MOST {
+                    return Err(too_many(line, "elements"));
+                }
                 elements.push(Element { name: name.to_owned(), count, properties: Vec::new(), line });
             }
             ["property", ..] => {
@@ -164,6 +175,9 @@ pub fn parse(bytes: &[u8]) -> Result<Header, Fault> {
                         format!("a second property {} of element {}", quote(&property.name), quote(&element.name)),
                         "rename or remove one of them",
                     ));
+                }
+                if element.properties.len() == MOST {
+                    return Err(too_many(line, "properties of an element"));
                 }
                 element.properties.push(property);
             }

@@ -65,7 +65,9 @@ impl Includes {
         let whole = match shown.canonicalize() {
             Ok(whole) => whole,
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
-                return fault("no such file", format!("it would be {}", shown.display()));
+                // A quoted name may have line ends in it
+                let place: String = shown.to_string_lossy().chars().filter(|c| !c.is_control()).collect();
+                return fault("no such file", format!("it would be {place}"));
             }
             Err(e) => return fault(&format!("cannot be read: {e}"), String::new()),
         };

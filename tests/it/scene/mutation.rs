@@ -1,6 +1,7 @@
 //! Thousands of broken variants of every fixture, the same ones on every machine: each is read or refused with one line;
 //! none panics, none hangs, and none takes more memory than sixteen times its file and 64 MiB.
 
+mod bombs;
 mod guard;
 mod mutate;
 

@@ -1,0 +1,154 @@
+//! Files that are small or plain, and would take long or much: each is read or refused at once, within the same limits of
+//! time and memory as the variants.
+
+use super::super::gltf::glb;
+use super::super::inventor::{HEADER, POINTS};
+use super::Files;
+use super::guard::{self, Watchdog};
+use base64::Engine;
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+/// Loads such a file; `words` are in what it is refused with, or empty if it is read.
+fn load(name: &str, bytes: &[u8], words: &str) {
+    let files = Files::new(&[]);
+    files.write(name, bytes);
+    let watchdog = Watchdog::new();
+    let what = format!("{name}: {words}");
+    watchdog.begin(&what);
+    let mut result = None;
+    let counted = allocation_counter::measure(|| result = Some(files.load(name)));
+    guard::hold_memory(&what, counted.bytes_max, bytes.len());
+    match result.unwrap() {
+        Ok(_) => assert!(words.is_empty(), "{what}: read, but should be refused"),
+        Err(error) => {
+            let error = error.to_string();
+            assert!(!words.is_empty() && error.contains(words) && !error.contains('\n'), "{what}: {error}");
+        }
+    }
+}
+
+#[test]
+fn inventor() {
+    let doubled = |i| format!("DEF n{i} FaceSet {{ vertexProperty USE n{0} vertexProperty USE n{0} }}\n", i - 1);
+    let doublings: String = (1..70).map(doubled).collect();
+    let around = "0,0,0,-1,".repeat(333);
+    for (text, words) in [
+        // Nothing, any number of times
+        ("Array { numElements1 0 numElements2 1e15 Cube {} } Cube {}", ""),
+        ("Array { numElements2 0 numElements3 1e15 Cube {} } Cube {}", "copies of copies never end"),
+        ("Array { numElements1 -1e300 origin CENTER Cube {} } Cube {}", ""),
+        ("POINTS QuadMesh { verticesPerColumn 1e18 verticesPerRow 0 } Cube {}", ""),
+        // Costs of costs, 2^70 of them
+        (&format!("Switch {{ DEF n0 VertexProperty {{ }} {doublings} }} USE n69"), "copies of copies never end"),
+        ("File { name \"two\nlines\" }", "no such file"),
+        // Every corner meets all faces, in many copies
+        (
+            &format!(
+                "ShapeHints {{ creaseAngle 1 }} POINTS DEF a IndexedFaceSet {{ coordIndex [ {around} ] }} {}",
+                "USE a ".repeat(2900)
+            ),
+            "too many smooth faces",
+        ),
+        ("Cube {} Array { numElements1 500000 DirectionalLight { direction 0 0 0 } }", "more than 64 MiB"),
+    ] {
+        load("main.iv", format!("{HEADER}{}", text.replace("POINTS", POINTS.trim_end())).as_bytes(), words);
+    }
+}
+
+#[test]
+fn mgf() {
+    let nested = format!("{}{}", "xf -a 100000 -t 0 0 1\n".repeat(90), "xf\n".repeat(90));
+    let ones = format!("xf -a 100000 {}\nxf\n", "-a 1 -i 1 -mx ".repeat(8000));
+    let colours = format!("xf -a 60000\n{}xf\n", "cct 3000\n".repeat(14));
+    let comment = format!("xf -a 100000\n#{}\nxf\n", "-".repeat(50_000));
+    let passed_over = format!("xf -a 100000\nxf -a 0\n{}xf\nxf\n", "o thing\n".repeat(8000));
+    for (text, words) in [
+        (comment.as_str(), "arrays of arrays never end"),
+        (&passed_over, "arrays of arrays never end"),
+        (nested.as_str(), "more than 64 MiB"),
+        (&ones, "there is no triangle"),
+        ("xf -a 100000\nxf -a 100000 -a 0\nxf\nxf\n", "there is no triangle"),
+        (&colours, "arrays of arrays never end"),
+    ] {
+        load("main.mgf", text.as_bytes(), words);
+    }
+}
+
+#[test]
+fn obj() {
+    const CORNERS: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    let mut normals = format!("{CORNERS}{}", "vn 0 0 1\n".repeat(50_000));
+    (1..=50_000).for_each(|i| writeln!(normals, "f 1//{i} 2//{i} 3//{i}").unwrap());
+    let mut materials = CORNERS.to_owned();
+    (0..400_000).for_each(|i| writeln!(materials, "usemtl {i}").unwrap());
+    for (text, words) in [
+        // Three positions have all vertices: looked for one after another, they would take minutes
+        (format!("{CORNERS}s off\n{}", "f 1 2 3\n".repeat(150_000)), ""),
+        (normals, ""),
+        // The file is its own library
+        (format!("{CORNERS}f 1 2 3\n{}", "mtllib main.obj\n".repeat(30_000)), ""),
+        (format!("{CORNERS}s off\n{}", "f 1 2 3\n".repeat(1_000_000)), "MiB of memory"),
+        (format!("{CORNERS}f {}\n", "1 2 3 ".repeat(500_000)), "MiB of memory"),
+        (materials, "there is no face"),
+    ] {
+        load("main.obj", text.as_bytes(), words);
+    }
+}
+
+#[test]
+fn ply() {
+    let mut header = "ply\nformat ascii 1.0\nelement vertex 3\n".to_owned();
+    (0..2000).for_each(|i| writeln!(header, "property char p{i}").unwrap());
+    load("main.ply", header.as_bytes(), ":1004: more than 1000 properties");
+    let mut corners = b"ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty char x\nproperty char y\n\
+        property char z\nelement face 1\nproperty list uint uchar vertex_indices\nend_header\n"
+        .to_vec();
+    corners.extend([0, 0, 0, 1, 0, 0, 0, 1, 0]);
+    corners.extend(8_000_000u32.to_le_bytes());
+    corners.extend([0, 1, 2, 0].repeat(2_000_000));
+    load("main.ply", &corners, "MiB of memory");
+}
+
+/// Zeros that need no bytes, but for one; one mesh, one node.
+fn zeros() -> (Value, Vec<u8>) {
+    let corners = [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    let mut bytes: Vec<u8> = corners.iter().flat_map(|x| x.to_le_bytes()).collect();
+    bytes.extend([0; 4]);
+    let document = json!({
+        "asset": { "version": "2.0" },
+        "buffers": [{ "byteLength": 40 }],
+        "bufferViews": [{ "buffer": 0, "byteLength": 36 }, { "buffer": 0, "byteOffset": 36, "byteLength": 1 }],
+        "accessors": [{
+            "componentType": 5126, "count": 65536, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1],
+            "sparse": {
+                "count": 1,
+                "indices": { "bufferView": 1, "componentType": 5121 },
+                "values": { "bufferView": 0 },
+            },
+        }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 } }] }],
+        "nodes": [{ "mesh": 0 }],
+    });
+    (document, bytes)
+}
+
+#[test]
+fn gltf() {
+    let (document, bytes) = zeros();
+    load("main.glb", &glb(&document, &bytes), "");
+    let mut copies = document.clone();
+    copies["nodes"] = vec![json!({ "mesh": 0 }); 2000].into();
+    load("main.glb", &glb(&copies, &bytes), "MiB of memory");
+    // Objects of three bytes, of which each takes hundreds
+    let mut empty = document.clone();
+    empty["nodes"] = vec![json!({}); 400_000].into();
+    load("main.gltf", empty.to_string().as_bytes(), "objects need");
+    // The file itself, as the buffer of many
+    let mut again = document.clone();
+    let data = base64::engine::general_purpose::STANDARD.encode(&bytes);
+    let mut buffers = vec![json!({ "byteLength": 40, "uri": format!("data:application/octet-stream;base64,{data}") })];
+    buffers.extend(vec![json!({ "byteLength": 1, "uri": "./main.gltf" }); 10_000]);
+    again["buffers"] = buffers.into();
+    load("main.gltf", again.to_string().as_bytes(), "");
+}
