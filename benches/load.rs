@@ -2,8 +2,8 @@
 //!
 //! For every format the largest file below that folder: megabytes per second on one core. Files that it includes are read,
 //! but not counted. Where that file is small, most of the time goes into opening it and into curved surfaces; so a large
-//! mesh is written in that format and read as well. Then the bar of the cache: the same scene from its source and from its `.rtb`, in turns, and the median
-//! of the ratios; for files of a megabyte or more, since others load at once.
+//! mesh is written in that format and read as well. Then the bar of the cache: the same scene from its source and from its
+//! `.rtb`, in turns, and the median of the ratios; for files of a megabyte or more, since others load at once.
 
 mod common;
 

@@ -5,6 +5,18 @@ use crate::error::{Error, Result};
 /// Most threads of a pool.
 pub const MAX_THREADS: usize = 1024;
 
+fn refused(problem: String) -> Error {
+    Error::argument("--threads", problem, format!("give 0 (all) to {MAX_THREADS}"))
+}
+
+/// Refuses more threads than a pool may have, before anything runs.
+///
+/// # Errors
+/// [`Error::Input`] if there are more than [`MAX_THREADS`].
+pub fn check(threads: usize) -> Result<()> {
+    if threads > MAX_THREADS { Err(refused(format!("{threads} threads are too many"))) } else { Ok(()) }
+}
+
 /// A pool of `threads` (0: one per processor), all of which run when this returns: starting them is no part of what is
 /// measured.
 ///
@@ -14,12 +26,9 @@ pub const MAX_THREADS: usize = 1024;
 /// threads stay free: which processors share a core is for the scheduler to know.
 ///
 /// # Errors
-/// [`Error::Input`] if there are more than [`MAX_THREADS`], or the system does not give them.
+/// Those of [`check`], or the system does not give so many.
 pub fn pool(threads: usize) -> Result<rayon::ThreadPool> {
-    let refused = |problem: String| Error::argument("--threads", problem, format!("give 0 (all) to {MAX_THREADS}"));
-    if threads > MAX_THREADS {
-        return Err(refused(format!("{threads} threads are too many")));
-    }
+    check(threads)?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()

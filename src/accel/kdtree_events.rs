@@ -107,7 +107,7 @@ fn starts_of(four: &[Event; 4]) -> usize {
     Vec4::from_array(four.map(|e| f32::from_bits(e as u32))).is_negative_bitmask() as usize
 }
 
-/// How many bits are set.
+/// How many bits are set. A table, since processors that this is built for need not have an instruction for it.
 const STARTS: [u32; 16] = [0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4];
 
 /// What four events do to the numbers of triangles on both sides.

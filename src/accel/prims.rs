@@ -103,12 +103,12 @@ pub(super) fn gather<T: Copy + Send + Sync>(
     let indices = (0..count as u32).into_par_iter().with_min_len(CHUNK);
     let mut items: Vec<T> = indices.map(|i| prim(scene, i).map_or(none, &make)).collect();
     // Whether any is missing comes out of the pass that the box takes anyway.
-    let mut around = around(&items, &prim_of);
-    if around.none > 0 {
+    let mut all = around(&items, &prim_of);
+    if all.none > 0 {
         items.retain(|item| !prim_of(item).is_none());
-        around = self::around(&items, &prim_of);
+        all = around(&items, &prim_of);
     }
-    Ok((items, around.bounds))
+    Ok((items, all.bounds))
 }
 
 /// What lies around some items, and how many of them are [`Prim::NONE`].

@@ -6,7 +6,7 @@ use crate::bench::sweep::Opened;
 use crate::cpu::CpuBackend;
 use crate::error::{Error, Result};
 use crate::gpu::{self, GpuBackend, GpuOptions, Selector};
-use crate::threads::MAX_THREADS;
+use crate::threads;
 use clap::{Args, ValueEnum};
 
 /// Which device, and how it is used.
@@ -44,10 +44,7 @@ impl DeviceArguments {
     /// # Errors
     /// [`Error::Input`].
     pub fn check(&self) -> Result<()> {
-        if self.threads > MAX_THREADS {
-            let problem = format!("{} threads", self.threads);
-            return Err(Error::argument("--threads", problem, format!("give 0 to {MAX_THREADS}")));
-        }
+        threads::check(self.threads)?;
         if self.backend == BackendName::Cpu && self.adapter.is_some() {
             return Err(Error::argument("--adapter", "there are no adapters with --backend cpu", "leave one out"));
         }

@@ -83,8 +83,7 @@ fn document_fits(bytes: &[u8], limits: &mut Limits) -> Result<(), Fault> {
     let json = if bytes.starts_with(b"glTF") { json_chunk(bytes) } else { bytes };
     let count = |byte| json.iter().filter(|&&b| b == byte).count();
     let needed = count(b'{') * PER_OBJECT + count(b'"') * PER_MARK;
-    // What is charged counts twice, for vectors that grow
-    limits.grow(needed / 2).map_err(|_| {
+    limits.keep(needed).map_err(|_| {
         let problem = format!("the JSON's {} objects need {} MiB of memory", count(b'{'), needed >> 20);
         (problem, "it may take 16 times the file and 64 MiB: export fewer nodes")
     })

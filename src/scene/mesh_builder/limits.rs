@@ -29,22 +29,23 @@ impl Limits {
     /// Something of this size is about to be stored for good. A vector that grows takes twice that.
     #[inline]
     pub fn grow(&mut self, bytes: usize) -> Result<(), Fault> {
-        self.used = self.used.saturating_add(bytes.saturating_mul(2));
-        self.hold(0)
+        self.keep(bytes.saturating_mul(2))
     }
 
-    /// Something of this size, which was to be stored, is gone.
+    /// Something is about to be stored for good that takes this much and no more.
+    #[inline]
+    pub fn keep(&mut self, bytes: usize) -> Result<(), Fault> {
+        self.used = self.used.saturating_add(bytes);
+        self.passing(0)
+    }
+
+    /// What was to [`Limits::grow`] by this size is gone.
     pub fn shrink(&mut self, bytes: usize) {
-        self.used = self.used.saturating_sub(2 * bytes);
+        self.used = self.used.saturating_sub(bytes.saturating_mul(2));
     }
 
     /// Holds that many bytes, which are stored for a while, against what is left.
     #[inline]
-    pub fn hold(&self, bytes: usize) -> Result<(), Fault> {
-        if self.used + bytes > self.allowed { Err(self.exceeded()) } else { Ok(()) }
-    }
-
-    /// Holds something of this size, which will be gone soon, against what is left.
     pub fn passing(&self, bytes: usize) -> Result<(), Fault> {
         if self.used.saturating_add(bytes) > self.allowed { Err(self.exceeded()) } else { Ok(()) }
     }

@@ -379,7 +379,7 @@ fn store(vertices: &mut Vec<Vertex>, vertex: Vertex, limits: &mut Limits, held: 
     let index = vertices.len();
     limits.elements(index)?;
     limits.grow(size_of::<Vertex>())?;
-    limits.hold(held)?;
+    limits.passing(held)?;
     vertices.push(vertex);
     Ok(index as u32)
 }

@@ -5,6 +5,7 @@ use super::{Point, Reader};
 use crate::scene::polygon::newell;
 use crate::scene::text::Fault;
 use glam::{DVec3, Vec3};
+use std::cell::LazyCell;
 
 impl Reader {
     /// Reads a shape of the current material.
@@ -82,8 +83,8 @@ impl Reader {
             return self.mesh.polygon_with_holes(&corners, &[], holes);
         }
         let outer = holes.first().map_or(corners.len(), |&first| first as usize);
-        let own = newell(&corners[..outer]);
-        let normal = |point: &Point| if point.normal == Vec3::ZERO { own } else { point.normal.as_dvec3() };
+        let own = LazyCell::new(|| newell(&corners[..outer]));
+        let normal = |point: &Point| if point.normal == Vec3::ZERO { *own } else { point.normal.as_dvec3() };
         let normals: Vec<DVec3> = points.iter().map(normal).collect();
         self.mesh.polygon_with_holes(&corners, &normals, holes)
     }

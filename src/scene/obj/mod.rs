@@ -163,8 +163,8 @@ impl<'a> Reader<'a> {
                 if self.unknown.len() < NAMES {
                     self.unknown.insert(lines::printable(&name));
                 }
-                let grown = self.faces.limits.grow((PER_MATERIAL + name.len()) / 2);
-                grown.map_err(|fault| Fault::new(line, fault.problem, "use fewer materials"))?;
+                let kept = self.faces.limits.keep(PER_MATERIAL + name.len());
+                kept.map_err(|fault| Fault::new(line, fault.problem, "use fewer materials"))?;
                 self.add(name, Material::neutral(), Vec3::ZERO)
             }
         };

@@ -101,16 +101,9 @@ fn break_it(case: &Case) -> u64 {
         }
         files.write(case.name, &bytes);
         watchdog.begin(&what);
-        let mut result = None;
-        let mut counted = Default::default();
-        let time = guard::processor_time(|| {
-            counted = allocation_counter::measure(|| {
-                result = catch_unwind(AssertUnwindSafe(|| files.load(case.load))).ok();
-            });
+        let result = guard::held(&what, beside + bytes.len(), || {
+            catch_unwind(AssertUnwindSafe(|| files.load(case.load))).unwrap_or_else(|_| panic!("{what}: panics"))
         });
-        let result = result.unwrap_or_else(|| panic!("{what}: panics"));
-        guard::hold_time(&what, time);
-        guard::hold_memory(&what, counted.bytes_max, beside + bytes.len());
         match result {
             Ok(scene) => {
                 read += 1;

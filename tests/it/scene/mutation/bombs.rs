@@ -16,12 +16,7 @@ fn load(name: &str, bytes: &[u8], words: &str) {
     let watchdog = Watchdog::new();
     let what = format!("{name}: {words}");
     watchdog.begin(&what);
-    let mut result = None;
-    let mut counted = Default::default();
-    let time = guard::processor_time(|| counted = allocation_counter::measure(|| result = Some(files.load(name))));
-    guard::hold_time(&what, time);
-    guard::hold_memory(&what, counted.bytes_max, bytes.len());
-    match result.unwrap() {
+    match guard::held(&what, bytes.len(), || files.load(name)) {
         Ok(_) => assert!(words.is_empty(), "{what}: read, but should be refused"),
         Err(error) => {
             let error = error.to_string();

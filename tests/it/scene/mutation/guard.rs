@@ -14,13 +14,13 @@ const MOMENT: Duration = Duration::from_secs(2);
 const HANG: Duration = Duration::from_secs(20);
 
 /// Fails if so many bytes of files may not lead to such a peak of memory (of this thread: readers allocate nowhere else).
-pub fn hold_memory(what: &str, peak: u64, file_bytes: usize) {
+fn hold_memory(what: &str, peak: u64, file_bytes: usize) {
     let limit = 16 * file_bytes as u64 + BASE;
     assert!(peak <= limit, "{what}: {peak} bytes allocated at once, {limit} are allowed for a file of {file_bytes}");
 }
 
 /// Runs something; returns the processor time that this thread spent on it.
-pub fn processor_time(run: impl FnOnce()) -> Duration {
+fn processor_time(run: impl FnOnce()) -> Duration {
     #[cfg(unix)]
     let now = || {
         let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
@@ -35,8 +35,17 @@ pub fn processor_time(run: impl FnOnce()) -> Duration {
 }
 
 /// Fails if reading took longer than it may.
-pub fn hold_time(what: &str, time: Duration) {
+fn hold_time(what: &str, time: Duration) {
     assert!(time <= MOMENT, "{what}: {time:?} of processor time, {MOMENT:?} are allowed");
+}
+
+/// Reads files of so many bytes, and fails if that takes more memory or more time than it may.
+pub fn held<T>(what: &str, file_bytes: usize, read: impl FnOnce() -> T) -> T {
+    let (mut result, mut peak) = (None, 0);
+    let time = processor_time(|| peak = allocation_counter::measure(|| result = Some(read())).bytes_max);
+    hold_time(what, time);
+    hold_memory(what, peak, file_bytes);
+    result.expect("measured things run")
 }
 
 /// Ends the whole test program if one piece of work takes for ever: a thread that hangs cannot be stopped otherwise.
