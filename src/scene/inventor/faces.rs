@@ -163,7 +163,7 @@ impl<'t> Faces<'t> {
                 for (place, &index) in indices.iter().enumerate() {
                     if index >= 0.0 {
                         let coordinate = index as usize;
-                        if index.fract() != 0.0 || coordinate >= self.coordinates.len() {
+                        if coordinate as f64 != index || coordinate >= self.coordinates.len() {
                             return Err(self.out_of_range(index));
                         }
                         corners.push(Corner { coordinate, place, number });
@@ -259,7 +259,7 @@ impl<'t> Choice<'t> {
         };
         match (self.indices, self.instead) {
             (Some((field, list)), _) => match list.get(at) {
-                Some(&index) if index >= 0.0 && index.fract() == 0.0 => Ok(index as usize),
+                Some(&index) if index as usize as f64 == index => Ok(index as usize),
                 Some(index) => Err(field.fault(format!("{index}, number {at} of the list, is no index"))),
                 None => Err(field.fault(format!("{} indices are too few", list.len()))),
             },

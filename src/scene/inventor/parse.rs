@@ -198,6 +198,9 @@ impl<'a> Parser<'a, '_> {
             b'[' => {
                 self.words.next();
                 loop {
+                    while let Some(value) = self.words.plain_number() {
+                        list.number(value);
+                    }
                     match self.words.need("a list")? {
                         b"]" => break,
                         word => self.item(name, word, &mut list)?,
@@ -244,9 +247,7 @@ impl<'a> Parser<'a, '_> {
                 let (name, word) = (String::from_utf8_lossy(name), quote_bytes(word));
                 return Err(self.words.fault(format!("{name}: {word} is not a finite number"), ""));
             };
-            if list.wanted {
-                list.numbers.push(value);
-            }
+            list.number(value);
             return Ok(());
         }
         self.item_of_words(name, word, list)
@@ -311,6 +312,13 @@ struct List {
 impl List {
     fn new(wanted: bool) -> List {
         List { wanted, numbers: Vec::new(), words: Vec::new(), node: None }
+    }
+
+    #[inline]
+    fn number(&mut self, value: f64) {
+        if self.wanted {
+            self.numbers.push(value);
+        }
     }
 
     /// Of mixed values the words count: they are refused where numbers are needed.

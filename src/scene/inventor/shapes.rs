@@ -1,7 +1,7 @@
 //! Shapes: what becomes triangles.
 
 use super::Reader;
-use super::crease::Creased;
+use super::crease::{Creased, Smooth};
 use super::faces::{Choice, Face, Faces};
 use super::kind::Kind;
 use super::state::{Binding, State};
@@ -142,15 +142,16 @@ impl Reader {
                 match &normals {
                     Normals::Flat => break,
                     Normals::Made(made) => {
-                        let (normal, looked_at) = made.normal(visited + i, face.visit);
-                        self.smooth(looked_at)?;
+                        let Smooth { normal, whole, work } = made.normal(visited + i, face.visit);
+                        self.smooth(work)?;
                         directions.push(normal);
+                        indices.push(whole.map(|place| [place, 0]));
                     }
                     Normals::Given(choice) => {
                         let index = choice.index(&face, corner)?;
                         let normal = state.normals.get(3 * index..3 * index + 3);
                         directions.push(normal.map_or(DVec3::ZERO, DVec3::from_slice));
-                        indices.push([corner.coordinate as u32, index as u32]);
+                        indices.push(Some([corner.coordinate as u32, index as u32]));
                     }
                 }
             }
@@ -158,7 +159,10 @@ impl Reader {
             if !materials.is_overall() && face.corners.len() > 2 {
                 self.bound_material(&face, &materials, state)?;
             }
-            self.mesh.indexed_polygon(&points, &directions, &indices)
+            match &normals {
+                Normals::Flat => self.mesh.flat_polygon(&points),
+                _ => self.mesh.indexed_polygon(&points, &directions, &indices),
+            }
         })
     }
 

@@ -2,22 +2,24 @@
 //! surfaces, and limits on what a file may grow into.
 //!
 //! A vertex has one normal (SPEC section 1). Corners with the same position and normal share a vertex within a *shape*
-//! (see [`MeshBuilder::new_shape`]), so that a smooth surface is indexed and a sharp edge has its vertices twice.
+//! (see [`MeshBuilder::new_shape`]), so that a smooth surface is indexed and a sharp edge has its vertices twice. Only a mesh
+//! of nothing but flat faces is not searched for such corners, except in neighbours ([`MeshBuilder::flat_polygon`]).
 
 mod curves;
 mod limits;
+mod polygons;
 mod shared;
 mod warnings;
 
-use super::polygon::{Triangulator, newell};
+use super::polygon::Triangulator;
 use super::text::Fault;
 use super::{Light, Material, Scene, Triangle};
 use crate::math::Vertex;
 use foldhash::fast::RandomState;
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 pub use limits::Limits;
+use polygons::has_direction;
 use shared::Shared;
-use std::cell::LazyCell;
 use std::collections::HashMap;
 pub use warnings::Warnings;
 
@@ -32,6 +34,8 @@ pub struct MeshBuilder {
     lights: Vec<Light>,
     /// The shape's vertices.
     shared: Shared,
+    /// Normal of the flat polygon that began the shape.
+    flat: Vec3,
     /// Materials by their bits.
     known: HashMap<[u32; 12], u32, RandomState>,
     current: Material,
@@ -76,6 +80,7 @@ impl Default for MeshBuilder {
             materials: Vec::new(),
             lights: Vec::new(),
             shared: Shared::default(),
+            flat: Vec3::ZERO,
             known: HashMap::default(),
             current: Material::neutral(),
             current_index: None,
@@ -288,79 +293,6 @@ impl MeshBuilder {
         Ok(index)
     }
 
-    /// A polygon with corners counter-clockwise where it is seen from outside: a fan if it is convex, otherwise cut into
-    /// ears. `normals` has one per corner, or none at all for a flat polygon. One with fewer than three corners is left
-    /// out, with a warning.
-    ///
-    /// # Errors
-    /// A corner is beyond single precision, or there is too much.
-    pub fn polygon(&mut self, corners: &[DVec3], normals: &[DVec3]) -> Result<(), Fault> {
-        self.any_polygon(corners, normals, &[], &[])
-    }
-
-    /// The same for a mesh that has indices of its own: with a position's and a normal's for each corner, a vertex that
-    /// comes again within this shape is found without looking at either.
-    ///
-    /// # Errors
-    /// As [`MeshBuilder::polygon`].
-    pub fn indexed_polygon(&mut self, corners: &[DVec3], normals: &[DVec3], indices: &[[u32; 2]]) -> Result<(), Fault> {
-        self.any_polygon(corners, normals, indices, &[])
-    }
-
-    /// The same with holes: each begins at one of the indices in `holes` and ends before the next; the polygon's own
-    /// corners come first.
-    ///
-    /// # Errors
-    /// As [`MeshBuilder::polygon`].
-    pub fn polygon_with_holes(&mut self, corners: &[DVec3], normals: &[DVec3], holes: &[u32]) -> Result<(), Fault> {
-        self.any_polygon(corners, normals, &[], holes)
-    }
-
-    fn any_polygon(
-        &mut self,
-        corners: &[DVec3],
-        normals: &[DVec3],
-        indices: &[[u32; 2]],
-        holes: &[u32],
-    ) -> Result<(), Fault> {
-        let outer = holes.first().map_or(corners.len(), |&first| first as usize);
-        if outer < 3 {
-            self.warnings.add("polygon with fewer than three corners left out");
-            return Ok(());
-        }
-        // Many need none: triangles whose corners have normals
-        let flat = LazyCell::new(|| newell(&corners[..outer]));
-        let mut own = None;
-        let mut vertices = std::mem::take(&mut self.corners);
-        vertices.clear();
-        for (i, &corner) in corners.iter().enumerate() {
-            let given = normals.get(i).copied().unwrap_or(DVec3::ZERO);
-            let has_length = has_direction(given);
-            if !normals.is_empty() && !has_length {
-                self.warnings.add("normal of no length: the polygon's own taken");
-            }
-            vertices.push(match indices.get(i) {
-                _ if !has_length => {
-                    let normal = *own.get_or_insert_with(|| self.direction(*flat));
-                    self.shared_vertex(corner, normal)?
-                }
-                Some(&indices) => self.known_vertex(indices, corner, given)?,
-                None => self.shared_vertex(corner, self.direction(given))?,
-            });
-        }
-        if let [a, b, c] = vertices[..] {
-            self.triangle([a, b, c])?;
-        } else {
-            let mut triangulator = std::mem::take(&mut self.triangulator);
-            for &[a, b, c] in triangulator.triangles(corners, holes, *flat) {
-                self.triangle([a, b, c].map(|i| vertices[i as usize]))?;
-            }
-            self.triangulator = triangulator;
-        }
-        self.corners = vertices;
-        Ok(())
-    }
-
     /// The mesh with its materials, lights and warnings.
     pub fn finish(self) -> Scene {
         let MeshBuilder { mut vertices, mut triangles, materials, lights, warnings, shared, .. } = self;
@@ -395,13 +327,6 @@ pub(super) fn unit(v: DVec3) -> DVec3 {
 fn unit_if_easy(v: DVec3) -> Option<DVec3> {
     let square = v.length_squared();
     (1e-200..1e200).contains(&square).then(|| v * square.sqrt().recip())
-}
-
-/// False for a vector without length, and for one that is not finite.
-#[inline]
-fn has_direction(v: DVec3) -> bool {
-    let largest = v.abs().max_element();
-    v.is_finite() && largest > 0.0
 }
 
 #[cfg(test)]

@@ -163,6 +163,23 @@ fn corners_share_vertices_within_a_shape_where_normals_agree() {
 }
 
 #[test]
+fn flat_polygons_share_vertices_with_the_ones_before_them_in_the_plane() {
+    let (o, x, y, z) = (DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z);
+    let scene = built(|b| {
+        b.flat_polygon(&[o, x, x + y, y]).unwrap();
+        b.flat_polygon(&[x, x * 2.0, x + y]).unwrap();
+        b.flat_polygon(&[o, z, x]).unwrap();
+        b.flat_polygon(&[o, x, y]).unwrap(); // the first plane again
+        b.new_shape();
+        b.flat_polygon(&[o, x, y]).unwrap();
+        b.flat_polygon(&[x, y]).unwrap();
+    });
+    assert_eq!((scene.vertices.len(), scene.triangles.len()), (5 + 3 + 3 + 3, 6));
+    assert_eq!(scene.warnings, ["polygon with fewer than three corners left out"]);
+    normals_face_out(&scene);
+}
+
+#[test]
 fn materials_are_kept_once_and_brought_into_range() {
     let red = Material::matt(Vec3::X);
     let scene = built(|b| {

@@ -16,13 +16,13 @@ const EXACT_F64: [f64; 23] = [
 /// Length of the token at the start: everything above the space.
 #[inline]
 pub fn token_length(bytes: &[u8]) -> usize {
-    bytes.iter().position(|&b| b <= b' ').unwrap_or(bytes.len())
+    bytes.iter().position(|&b| is_blank(b)).unwrap_or(bytes.len())
 }
 
-/// True where a token ends.
+/// True for what ends a token.
 #[inline(always)]
-fn ends(bytes: &[u8], at: usize) -> bool {
-    bytes.get(at).is_none_or(|&b| b <= b' ')
+fn is_blank(byte: u8) -> bool {
+    byte <= b' '
 }
 
 /// A plain decimal: digits with at most one point, no exponent, at most 19 digits.
@@ -34,8 +34,9 @@ struct Decimal {
     length: usize,
 }
 
+/// One that `blank` bytes or the end of the slice follow.
 #[inline(always)]
-fn decimal(bytes: &[u8]) -> Option<Decimal> {
+fn decimal(bytes: &[u8], blank: impl Fn(u8) -> bool) -> Option<Decimal> {
     let negative = bytes.first() == Some(&b'-');
     let mut at = usize::from(negative);
     let mut mantissa = 0u64;
@@ -56,13 +57,14 @@ fn decimal(bytes: &[u8]) -> Option<Decimal> {
         places = at - start;
         digits += places;
     }
-    ((1..=19).contains(&digits) && ends(bytes, at)).then_some(Decimal { negative, mantissa, places, length: at })
+    let ends = bytes.get(at).is_none_or(|&b| blank(b));
+    ((1..=19).contains(&digits) && ends).then_some(Decimal { negative, mantissa, places, length: at })
 }
 
 /// A number in single precision, correctly rounded; also infinite or NaN, if the text says so.
 #[inline]
 pub fn float(bytes: &[u8]) -> Option<(f32, usize)> {
-    match decimal(bytes) {
+    match decimal(bytes, is_blank) {
         Some(d) if d.mantissa <= 1 << 24 && d.places < EXACT_F32.len() => {
             let value = d.mantissa as f32 / EXACT_F32[d.places];
             Some((if d.negative { -value } else { value }, d.length))
@@ -71,10 +73,11 @@ pub fn float(bytes: &[u8]) -> Option<(f32, usize)> {
     }
 }
 
-/// A number in double precision of the kind that most are: few digits, no exponent. `None` says nothing about others.
+/// A number in double precision of the kind that most are: few digits, no exponent, and a blank behind it. `None` says
+/// nothing about others.
 #[inline(always)]
-pub fn plain_double(bytes: &[u8]) -> Option<(f64, usize)> {
-    let d = decimal(bytes)?;
+pub fn plain_double(bytes: &[u8], blank: impl Fn(u8) -> bool) -> Option<(f64, usize)> {
+    let d = decimal(bytes, blank)?;
     (d.mantissa <= 1 << 53 && d.places < EXACT_F64.len()).then(|| {
         let value = d.mantissa as f64 / EXACT_F64[d.places];
         (if d.negative { -value } else { value }, d.length)
@@ -84,7 +87,7 @@ pub fn plain_double(bytes: &[u8]) -> Option<(f64, usize)> {
 /// A number in double precision, correctly rounded; also infinite or NaN, if the text says so.
 #[inline]
 pub fn double(bytes: &[u8]) -> Option<(f64, usize)> {
-    plain_double(bytes).or_else(|| by_standard_library(bytes))
+    plain_double(bytes, is_blank).or_else(|| by_standard_library(bytes))
 }
 
 /// A whole number that fits into 18 digits, and thereby any index.
@@ -98,7 +101,7 @@ pub fn integer(bytes: &[u8]) -> Option<(i64, usize)> {
         value = value.wrapping_mul(10).wrapping_add(digit.into());
         at += 1;
     }
-    ((1..=18).contains(&(at - start)) && ends(bytes, at))
+    ((1..=18).contains(&(at - start)) && bytes.get(at).is_none_or(|&b| is_blank(b)))
         .then_some((if negative { value.wrapping_neg() } else { value }, at))
 }
 

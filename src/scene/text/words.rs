@@ -238,14 +238,22 @@ impl<'a> Words<'a> {
     /// It is none; `what` says for whom it was.
     #[inline]
     pub fn number(&mut self, what: &str) -> Result<f64, Fault> {
-        self.seek();
-        // A number that ends at a blank is a word of its own, whatever the syntax: no need to look for its end first
-        if let Some((value, length)) = number::plain_double(&self.bytes[self.at..]) {
-            self.line = self.here;
-            self.at += length;
-            return Ok(value);
+        match self.plain_number() {
+            Some(value) => Ok(value),
+            None => self.other_number(what),
         }
-        self.other_number(what)
+    }
+
+    /// The next word as a number, if it is of the kind that most are. Otherwise, whatever it is, it stays.
+    #[inline]
+    pub fn plain_number(&mut self) -> Option<f64> {
+        self.seek();
+        // A number that ends at a blank is a word of its own: no need to look for its end first
+        let blank = |byte| matches!(self.syntax.class(byte), Class::Blank | Class::LineEnd);
+        let (value, length) = number::plain_double(&self.bytes[self.at..], blank)?;
+        self.line = self.here;
+        self.at += length;
+        Some(value)
     }
 
     /// Numbers with an exponent or many digits, right before punctuation, not finite, or none at all.

@@ -2,7 +2,7 @@
 
 use super::Files;
 use super::inventor::{POINTS, PYRAMID, colours, corners, faces_out, iv, materials, near};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 #[test]
 fn sets_of_faces_share_one_meaning() {
@@ -184,4 +184,42 @@ fn normals_are_bound_or_made() {
         let scene = Files::new(&[("main.wrl", &format!("{header}\n{bent}"))]).load("main.wrl").unwrap();
         assert_eq!(scene.vertices.len(), vertices, "{header}");
     }
+}
+
+/// Every corner of a bumpy surface has the normal that the definition gives, with creases here and none there.
+#[test]
+fn creases_are_where_the_definition_has_them() {
+    const SIDE: usize = 12;
+    let height =
+        |i: usize| ((i * 7919 + i / 5 * 104_729) % 97) as f64 / 97.0 * if i % SIDE < SIDE / 2 { 0.1 } else { 1.5 };
+    let points: Vec<DVec3> =
+        (0..SIDE * SIDE).map(|i| DVec3::new((i % SIDE) as f64, (i / SIDE) as f64, height(i))).collect();
+    let corner = |i: usize| i / (SIDE - 1) * SIDE + i % (SIDE - 1);
+    let faces: Vec<[usize; 3]> = (0..(SIDE - 1) * (SIDE - 1))
+        .map(corner)
+        .flat_map(|i| [[i, i + 1, i + SIDE], [i + 1, i + SIDE + 1, i + SIDE]])
+        .collect();
+    let flat: Vec<DVec3> =
+        faces.iter().map(|face| face.map(|i| points[i])).map(|[a, b, c]| (b - a).cross(c - a).normalize()).collect();
+    let texts = |lists: Vec<String>| lists.join(", ");
+    let point = texts(points.iter().map(|p| format!("{} {} {}", p.x, p.y, p.z)).collect());
+    let index = texts(faces.iter().map(|[a, b, c]| format!("{a} {b} {c} -1")).collect());
+    let (mut creased, mut whole) = (0, 0);
+    for angle in [0.05f64, 0.3, 0.6, 1.2, 2.0, 4.0] {
+        let scene = iv(&format!(
+            "ShapeHints {{ creaseAngle {angle} }} Coordinate3 {{ point [ {point} ] }} IndexedFaceSet {{ coordIndex [ {index} ] }}"
+        ));
+        for (face, triangle) in scene.triangles.iter().enumerate() {
+            for (k, &vertex) in triangle.vertices.iter().enumerate() {
+                let around: Vec<usize> =
+                    (0..faces.len()).filter(|&other| faces[other].contains(&faces[face][k])).collect();
+                let smooth = |&&other: &&usize| flat[other].angle_between(flat[face]) <= angle;
+                let sum: DVec3 = around.iter().filter(smooth).map(|&other| flat[other]).sum();
+                near(scene.vertices[vertex as usize].normal, sum.normalize().as_vec3().to_array(), &angle.to_string());
+                let count = around.iter().filter(smooth).count();
+                *(if count < around.len() { &mut creased } else { &mut whole }) += 1;
+            }
+        }
+    }
+    assert!(creased > 1000 && whole > 1000, "{creased} {whole}");
 }
