@@ -14,6 +14,7 @@
 mod accessor;
 mod buffers;
 mod material;
+mod room;
 mod walk;
 
 use super::mesh_builder::Limits;

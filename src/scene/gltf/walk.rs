@@ -1,11 +1,11 @@
 //! The walk over the nodes, which collects the scene.
 
 use super::buffers::Buffers;
+use super::room::{is_surface, too_much};
 use super::{Fault, accessor, material};
 use crate::math::Vertex;
 use crate::scene::mesh_builder::Limits;
-use crate::scene::text;
-use crate::scene::{Light, MAX_ELEMENTS, Material, Pose, Scene, SceneCamera, Triangle, lamps, normals};
+use crate::scene::{Light, Material, Pose, Scene, SceneCamera, Triangle, lamps, normals};
 use glam::{DMat3, DMat4, DVec3, Mat4, Vec3};
 use gltf::khr_lights_punctual::Kind;
 use gltf::mesh::Mode;
@@ -14,9 +14,9 @@ use gltf::{Document, Node, Primitive};
 /// What has been collected.
 pub struct Walk<'a> {
     document: &'a Document,
-    buffers: &'a Buffers<'a>,
-    scene: Scene,
-    emission: Vec<Vec3>,
+    pub(super) buffers: &'a Buffers<'a>,
+    pub(super) scene: Scene,
+    pub(super) emission: Vec<Vec3>,
     /// Index of the material without an entry in the file.
     default_material: Option<u32>,
     /// Position and power of point and spot lights, direction and power of directional ones.
@@ -27,7 +27,7 @@ pub struct Walk<'a> {
     orthographic: bool,
     deformed: bool,
     repaired: usize,
-    limits: Limits,
+    pub(super) limits: Limits,
 }
 
 impl<'a> Walk<'a> {
@@ -59,33 +59,34 @@ impl<'a> Walk<'a> {
     pub fn scene(&mut self) -> Result<(), Fault> {
         // What the buffers take beside the file's own bytes
         self.limits.grow(self.buffers.total()).map_err(too_much)?;
-        let scene = self.document.default_scene().or_else(|| self.document.scenes().next());
-        let mut stack: Vec<(Node, DMat4)> = match scene {
-            Some(scene) => scene.nodes().map(|node| (node, DMat4::IDENTITY)).collect(),
+        let nodes = self.nodes()?;
+        self.make_room(&nodes)?;
+        nodes.iter().try_for_each(|(node, world)| self.node(node, world))
+    }
+
+    /// All nodes of the scene with their transforms from there to the world.
+    fn nodes(&mut self) -> Result<Vec<(Node<'a>, DMat4)>, Fault> {
+        let count = self.document.nodes().count();
+        self.limits.keep(count * (2 * size_of::<(Node, DMat4)>() + 1)).map_err(too_much)?;
+        let mut nodes = Vec::with_capacity(count);
+        let mut placed = Placed { stack: Vec::with_capacity(count), seen: vec![false; count] };
+        match self.document.default_scene().or_else(|| self.document.scenes().next()) {
+            Some(scene) => placed.push(scene.nodes(), DMat4::IDENTITY)?,
             None => {
-                let mut child = vec![false; self.document.nodes().count()];
+                let mut child = vec![false; count];
                 self.document.nodes().flat_map(|n| n.children()).for_each(|c| child[c.index()] = true);
-                self.document.nodes().filter(|n| !child[n.index()]).map(|node| (node, DMat4::IDENTITY)).collect()
+                placed.push(self.document.nodes().filter(|n| !child[n.index()]), DMat4::IDENTITY)?;
             }
-        };
-        stack.reverse();
-        let mut seen = vec![false; self.document.nodes().count()];
-        while let Some((node, parent)) = stack.pop() {
-            // A tree is what the format demands; a loop would never end.
-            if std::mem::replace(&mut seen[node.index()], true) {
-                let problem = format!("node {} has two parents or is its own ancestor", node.index());
-                return Err((problem, "the nodes must be a tree: export the file again"));
-            }
+        }
+        while let Some((node, parent)) = placed.stack.pop() {
             let world = parent * Mat4::from_cols_array_2d(&node.transform().matrix()).as_dmat4();
             if !world.is_finite() {
                 return Err((format!("node {} has a transform that is not finite", node.index()), "repair it"));
             }
-            self.node(&node, &world)?;
-            let first = stack.len();
-            stack.extend(node.children().map(|child| (child, world)));
-            stack[first..].reverse();
+            placed.push(node.children(), world)?;
+            nodes.push((node, world));
         }
-        Ok(())
+        Ok(nodes)
     }
 
     fn node(&mut self, node: &Node, world: &DMat4) -> Result<(), Fault> {
@@ -130,19 +131,13 @@ impl<'a> Walk<'a> {
 
     /// Adds a primitive's triangles, at their place in the world.
     fn primitive(&mut self, primitive: &Primitive, world: &DMat4) -> Result<(), Fault> {
-        if matches!(primitive.mode(), Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) {
-            self.no_surface += 1;
-            return Ok(());
-        }
-        let Some(positions) = primitive.get(&gltf::Semantic::Positions) else {
-            return Err(("a primitive has no positions".into(), "export the file again"));
+        let positions = match primitive.get(&gltf::Semantic::Positions) {
+            Some(positions) if is_surface(primitive.mode()) => accessor::vectors(&positions, self.buffers)?,
+            _ => {
+                self.no_surface += 1;
+                return Ok(());
+            }
         };
-        accessor::check(&positions, self.buffers)?;
-        if let Some(indices) = primitive.indices() {
-            accessor::check_indices(&indices, self.buffers)?;
-        }
-        self.hold(primitive, positions.count())?;
-        let positions = accessor::vectors(&positions, self.buffers)?;
         let given = match primitive.get(&gltf::Semantic::Normals) {
             Some(normals) => Some(accessor::vectors(&normals, self.buffers)?),
             None => None,
@@ -158,62 +153,36 @@ impl<'a> Walk<'a> {
             let problem = format!("a primitive uses vertex {index} of {}", positions.len());
             return Err((problem, "export the file again"));
         }
-        let mut triangles = corners(primitive.mode(), &indices);
-        let linear = DMat3::from_mat4(*world);
-        let mirrored = linear.determinant() < 0.0;
-        if mirrored {
-            triangles.iter_mut().for_each(|t| t.swap(1, 2));
-        }
-        let new = if given.is_some() { positions.len() } else { 3 * triangles.len() };
-        if self.scene.vertices.len() + new > MAX_ELEMENTS || self.scene.triangles.len() + triangles.len() > MAX_ELEMENTS
-        {
-            let problem = format!("there are more than {MAX_ELEMENTS} triangles or vertices, instances counted");
-            return Err((problem, "simplify the scene"));
-        }
         let material = self.material(primitive);
-        let first = self.scene.vertices.len() as u32;
+        let mut triangles = corners(primitive.mode(), &indices, material);
+        drop(indices);
+        let linear = DMat3::from_mat4(*world);
+        if linear.determinant() < 0.0 {
+            triangles.iter_mut().for_each(|t| t.vertices.swap(1, 2));
+        }
+        let first = self.scene.vertices.len();
         let place = |p: Vec3| world.transform_point3(p.as_dvec3()).as_vec3();
-        let mut vertices: Vec<Vertex>;
+        let vertices = &mut self.scene.vertices;
         match given {
             Some(given) => {
                 // Of a flattening transform no normal is left: they are computed.
                 let inverse = linear.inverse().transpose();
                 let turn = |n: Vec3| (inverse * n.as_dvec3()).normalize_or_zero().as_vec3();
-                vertices = positions.iter().zip(given).map(|(&p, n)| Vertex::new(place(p), turn(n))).collect();
+                vertices.extend(positions.iter().zip(given).map(|(&p, n)| Vertex::new(place(p), turn(n))));
+                self.repaired += normals::normalise_or_smooth(&mut vertices[first..], &triangles);
             }
             None => {
-                let corner = |i: u32| Vertex::new(place(positions[i as usize]), Vec3::ZERO);
-                vertices = triangles.iter().flatten().map(|&i| corner(i)).collect();
-                triangles = (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+                let corner = |v: u32| Vertex::new(place(positions[v as usize]), Vec3::ZERO);
+                vertices.extend(triangles.iter().flat_map(|t| t.vertices).map(corner));
+                for (triangle, v) in triangles.iter_mut().zip((0..).step_by(3)) {
+                    triangle.vertices = [v, v + 1, v + 2];
+                }
+                normals::smooth(&mut vertices[first..], &triangles);
             }
         }
-        let local: Vec<Triangle> = triangles.iter().map(|&vertices| Triangle { vertices, material }).collect();
-        let has_normals = new == positions.len() && primitive.get(&gltf::Semantic::Normals).is_some();
-        let repaired = normals::normalise_or_smooth(&mut vertices, &local);
-        self.repaired += if has_normals { repaired } else { 0 };
-        self.scene.vertices.append(&mut vertices);
-        let global = |t: &Triangle| Triangle { vertices: t.vertices.map(|v| v + first), ..*t };
-        self.scene.triangles.extend(local.iter().map(global));
+        let global = |t: &Triangle| Triangle { vertices: t.vertices.map(|v| v + first as u32), ..*t };
+        self.scene.triangles.extend(triangles.iter().map(global));
         Ok(())
-    }
-
-    /// Holds what a primitive needs of memory against what its file may take: every node that shows a mesh has a copy.
-    fn hold(&mut self, primitive: &Primitive, positions: usize) -> Result<(), Fault> {
-        let corners = primitive.indices().map_or(positions, |indices| indices.count());
-        let triangles = if primitive.mode() == Mode::Triangles { corners / 3 } else { corners };
-        let flat = primitive.get(&gltf::Semantic::Normals).is_none();
-        let vertices = if flat { triangles.saturating_mul(3) } else { positions };
-        // Indices, and triangles three times: of the file, of this primitive, with their material
-        let triangles_now = triangles.saturating_mul(2 * size_of::<[u32; 3]>() + size_of::<Triangle>());
-        // Vertices with and without their normals computed, and what must be computed
-        let vertices_now = vertices.saturating_mul(2 * size_of::<Vertex>() + size_of::<usize>());
-        let read = positions.saturating_mul(2 * size_of::<Vec3>()).saturating_add(corners.saturating_mul(4));
-        let now = triangles_now.saturating_add(vertices_now).saturating_add(read);
-        self.limits.passing(now).map_err(too_much)?;
-        let shines = primitive.material().index().is_some_and(|i| self.emission[i] != Vec3::ZERO);
-        let lamps = if shines { triangles.saturating_mul(lamps::BYTES) } else { 0 };
-        let kept = vertices * size_of::<Vertex>() + triangles * size_of::<Triangle>();
-        self.limits.grow(kept.saturating_add(lamps)).map_err(too_much)
     }
 
     fn material(&mut self, primitive: &Primitive) -> u32 {
@@ -267,19 +236,40 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// The file needs more memory than it may take.
-fn too_much(fault: text::Fault) -> Fault {
-    (fault.problem, "do many nodes show the same mesh? Show it less often, or simplify it")
+/// Nodes that are still to be visited, and which have been met.
+struct Placed<'a> {
+    /// The next one is the last.
+    stack: Vec<(Node<'a>, DMat4)>,
+    seen: Vec<bool>,
+}
+
+impl<'a> Placed<'a> {
+    /// Adds the nodes below a place. A tree is what the format demands: a loop would never end, and a node that is listed a
+    /// million times would come a million times.
+    fn push(&mut self, nodes: impl Iterator<Item = Node<'a>>, place: DMat4) -> Result<(), Fault> {
+        let first = self.stack.len();
+        for node in nodes {
+            if std::mem::replace(&mut self.seen[node.index()], true) {
+                let problem = format!("node {} has two parents or is its own ancestor", node.index());
+                return Err((problem, "the nodes must be a tree: export the file again"));
+            }
+            self.stack.push((node, place));
+        }
+        self.stack[first..].reverse();
+        Ok(())
+    }
 }
 
 /// Triangles of a list, strip or fan, all wound the same way; an incomplete one at the end is dropped.
-fn corners(mode: Mode, i: &[u32]) -> Vec<[u32; 3]> {
+fn corners(mode: Mode, i: &[u32], material: u32) -> Vec<Triangle> {
     let all = i.len().saturating_sub(2);
+    let triangle = |vertices| Triangle { vertices, material };
     match mode {
-        Mode::TriangleStrip => {
-            (0..all).map(|k| if k % 2 == 0 { [i[k], i[k + 1], i[k + 2]] } else { [i[k + 1], i[k], i[k + 2]] }).collect()
-        }
-        Mode::TriangleFan => (0..all).map(|k| [i[0], i[k + 1], i[k + 2]]).collect(),
-        _ => i.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect(),
+        Mode::TriangleStrip => (0..all)
+            .map(|k| if k % 2 == 0 { [i[k], i[k + 1], i[k + 2]] } else { [i[k + 1], i[k], i[k + 2]] })
+            .map(triangle)
+            .collect(),
+        Mode::TriangleFan => (0..all).map(|k| [i[0], i[k + 1], i[k + 2]]).map(triangle).collect(),
+        _ => i.as_chunks().0.iter().copied().map(triangle).collect(),
     }
 }

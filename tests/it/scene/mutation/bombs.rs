@@ -148,4 +148,51 @@ fn gltf() {
     buffers.extend(vec![json!({ "byteLength": 1, "uri": "./main.gltf" }); 10_000]);
     again["buffers"] = buffers.into();
     load("main.gltf", again.to_string().as_bytes(), "");
+    // A child of two bytes, any number of times
+    let mut children = document.clone();
+    children["nodes"] = json!([{ "children": vec![1; 2_000_000] }, {}]);
+    load("main.glb", &glb(&children, &bytes), "two parents");
+    // Many nodes that show many primitives of nothing
+    let mut nothing = document.clone();
+    nothing["accessors"] = json!([{ "componentType": 5126, "count": 0, "type": "VEC3", "bufferView": 0, "min": [0, 0, 0],
+        "max": [0, 0, 0] }]);
+    nothing["meshes"][0]["primitives"] = vec![json!({ "attributes": { "POSITION": 0 } }); 8_000].into();
+    nothing["nodes"] = vec![json!({ "mesh": 0 }); 8_000].into();
+    load("main.glb", &glb(&nothing, &bytes), "MiB of memory");
+}
+
+/// Many flat triangles whose indices are short: the most that an ordinary file takes of memory for its size.
+#[test]
+fn a_large_glb_without_normals_is_read() {
+    let (shown, points) = (25, 20_000u16);
+    let mut bytes: Vec<u8> = (0..3 * u32::from(points)).flat_map(|i| (i as f32).sin().to_le_bytes()).collect();
+    let corners = 3 * 2 * u32::from(points);
+    let count = bytes.len();
+    bytes.extend((0..corners).flat_map(|i| ((i * 7919 % u32::from(points)) as u16).to_le_bytes()));
+    let length = bytes.len();
+    let mut all = Vec::new();
+    (0..shown).for_each(|_| all.extend_from_slice(&bytes));
+    let views = (0..shown).flat_map(|i| {
+        [
+            json!({ "buffer": 0, "byteOffset": i * length, "byteLength": count }),
+            json!({ "buffer": 0, "byteOffset": i * length + count, "byteLength": length - count }),
+        ]
+    });
+    let accessors = (0..shown).flat_map(|i| {
+        [
+            json!({ "componentType": 5126, "count": points, "type": "VEC3", "bufferView": 2 * i, "min": [-1, -1, -1],
+                "max": [1, 1, 1] }),
+            json!({ "componentType": 5123, "count": corners, "type": "SCALAR", "bufferView": 2 * i + 1 }),
+        ]
+    });
+    let document = json!({
+        "asset": { "version": "2.0" },
+        "buffers": [{ "byteLength": all.len() }],
+        "bufferViews": views.collect::<Vec<_>>(),
+        "accessors": accessors.collect::<Vec<_>>(),
+        "meshes": (0..shown).map(|i| json!({ "primitives": [{ "attributes": { "POSITION": 2 * i },
+            "indices": 2 * i + 1 }] })).collect::<Vec<_>>(),
+        "nodes": (0..shown).map(|i| json!({ "mesh": i })).collect::<Vec<_>>(),
+    });
+    load("main.glb", &glb(&document, &all), "");
 }
