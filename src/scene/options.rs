@@ -18,6 +18,9 @@ pub struct Options {
     pub up: Up,
     /// Factor on all lengths, applied last.
     pub scale: f32,
+    /// Name of the camera among the file's: for BART of the keyframes that move the viewer, for glTF of the camera or its
+    /// node. `None`: BART's `camera`, glTF's first.
+    pub camera: Option<String>,
     /// Field of view in degrees for the file's camera, instead of the file's own.
     pub fov: Option<f32>,
     /// OBJ: the material that shines although the file does not say so (exporters lose it); its faces become lights.
@@ -43,6 +46,7 @@ impl Default for Options {
             outside: false,
             up: Up::Y,
             scale: 1.0,
+            camera: None,
             fov: None,
             lamp: None,
         }
@@ -54,7 +58,7 @@ pub const MAX_SEGMENTS: u32 = 1024;
 
 impl Options {
     /// The names of all options.
-    pub const KEYS: [&str; 8] = ["time", "segments", "cones", "outside", "up", "scale", "fov", "lamp"];
+    pub const KEYS: [&str; 9] = ["time", "segments", "cones", "outside", "up", "scale", "camera", "fov", "lamp"];
 
     /// Reads `key=value,...`; `what` stands in errors.
     ///
@@ -95,6 +99,10 @@ impl Options {
                     Ok(fov) if (0.1..=179.0).contains(&fov) => options.fov = Some(fov),
                     _ => return Err(wrong("give 0.1 to 179 degrees")),
                 },
+                "camera" => match value {
+                    "" => return Err(wrong("give the name of a camera")),
+                    name => options.camera = Some(name.to_owned()),
+                },
                 "lamp" => match value {
                     "" => return Err(wrong("give the name of a material")),
                     name => options.lamp = Some(name.to_owned()),
@@ -128,6 +136,9 @@ impl Options {
         }
         if self.scale != 1.0 {
             set.push(format!("scale={}", self.scale));
+        }
+        if let Some(camera) = &self.camera {
+            set.push(format!("camera={camera}"));
         }
         if let Some(fov) = self.fov {
             set.push(format!("fov={fov}"));

@@ -24,7 +24,7 @@ mod spline;
 use super::mesh_builder::MeshBuilder;
 use super::text::{Includes, Syntax, Trouble, Words};
 use super::{Options, Scene};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use camera::{Animation, Viewpoint};
 use glam::{DVec3, Vec3};
 use keys::Keyframes;
@@ -95,7 +95,13 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     reader.mesh.read(reader.includes.bytes());
     reader.file(path, &bytes)?;
 
-    let keys = reader.keys.get(&b"camera"[..]);
+    let keys = match &options.camera {
+        None => reader.keys.get(&b"camera"[..]),
+        Some(name) => Some(reader.keys.get(name.as_bytes()).ok_or_else(|| {
+            let mend = "give the name of keyframes that the file has, or leave `camera=` out";
+            Error::file(path, None, format!("there are no keyframes `{name}`"), mend)
+        })?),
+    };
     let camera = camera::camera(reader.view.as_ref(), keys, reader.animation.as_ref(), reader.time);
     Ok(Scene { background: reader.background, camera, ..reader.mesh.finish() })
 }

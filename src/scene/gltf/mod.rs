@@ -5,7 +5,7 @@
 //!
 //! What is taken: the default scene (else the first, else all nodes), every mesh once per node that shows it, in the
 //! order of the nodes; triangles, strips and fans. A primitive without normals is flat, as the format demands. The first
-//! perspective camera is the scene's. Materials: see [`material`]. Punctual lights become point lights: a spot shines
+//! perspective camera is the scene's, or the one that `camera=` names. Materials: see [`material`]. Punctual lights become point lights: a spot shines
 //! all around, a directional light stands ten diagonals away; since our lights do not fade, their colours are scaled
 //! so that together their brightest channel is 1. Without any, surfaces that shine become lights ([`super::lamps`]).
 //!
@@ -51,7 +51,7 @@ pub fn read_bytes(path: &Path, bytes: &[u8], options: &Options) -> Result<Scene>
     let document = gltf::Document::from_json(json).map_err(|error| refusal(path, error))?;
     let buffers = Buffers::load(path, &document, unchecked.blob.as_deref(), options).map_err(at)?;
     limits.read(buffers.beside());
-    let mut walk = Walk::new(&document, &buffers, limits);
+    let mut walk = Walk::new(&document, &buffers, limits, options.camera.as_deref());
     walk.scene().map_err(at)?;
     walk.finish().map_err(at)
 }

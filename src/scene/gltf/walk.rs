@@ -28,11 +28,13 @@ pub struct Walk<'a> {
     deformed: bool,
     repaired: usize,
     pub(super) limits: Limits,
+    /// Name of the camera that is wanted.
+    camera: Option<&'a str>,
 }
 
 impl<'a> Walk<'a> {
-    /// Begins with the materials.
-    pub fn new(document: &'a Document, buffers: &'a Buffers<'a>, limits: Limits) -> Walk<'a> {
+    /// Begins with the materials. `camera` is the one that is wanted, the first if none is.
+    pub fn new(document: &'a Document, buffers: &'a Buffers<'a>, limits: Limits, camera: Option<&'a str>) -> Walk<'a> {
         let (materials, emission): (Vec<Material>, Vec<Vec3>) =
             document.materials().map(|m| material::convert(&m)).unzip();
         let mut scene = Scene { materials, ..Scene::default() };
@@ -52,6 +54,7 @@ impl<'a> Walk<'a> {
             deformed: false,
             repaired: 0,
             limits,
+            camera,
         }
     }
 
@@ -97,7 +100,11 @@ impl<'a> Walk<'a> {
                 self.primitive(&primitive, world)?;
             }
         }
-        if let Some(camera) = node.camera().filter(|_| self.scene.camera.is_none()) {
+        let wanted = |camera: &gltf::Camera| {
+            let named = self.camera.is_none_or(|name| [camera.name(), node.name()].contains(&Some(name)));
+            named && self.scene.camera.is_none()
+        };
+        if let Some(camera) = node.camera().filter(wanted) {
             match camera.projection() {
                 gltf::camera::Projection::Perspective(lens) => self.camera(lens.yfov(), world),
                 gltf::camera::Projection::Orthographic(_) => self.orthographic = true,
@@ -200,6 +207,12 @@ impl<'a> Walk<'a> {
     pub fn finish(mut self) -> Result<Scene, Fault> {
         if self.scene.triangles.is_empty() {
             return Err(("the scene shows no triangle".into(), "export it as a mesh of triangles"));
+        }
+        if let Some(name) = self.camera.filter(|_| self.scene.camera.is_none()) {
+            return Err((
+                format!("there is no camera `{name}` that can look"),
+                "give the name of a perspective camera",
+            ));
         }
         self.lights();
         let mut warn = |warning: String| self.scene.warnings.push(warning);

@@ -160,6 +160,17 @@ fn a_still_viewpoint_is_a_camera_and_nff_a_scene() {
     assert_eq!(Files::new(&[("main.nff", &nowhere)]).load("main.nff").unwrap().camera, None);
 }
 
+#[test]
+fn another_camera_may_be_named() {
+    let other = "k camera { transl 4 0 5 0 0 0 0 0 1 5 0 0 0 0 0 2 5 0 0 0 0 0 3 5 0 0 0 0 0 }\n";
+    let files = Files::new(&[("main.aff", &format!("v from 0 0 9 at 0 0 0 a 0 3 4 {TRIANGLE}\n{other}{KEYS}"))]);
+    let position = |what: &str| files.load(what).map(|scene| scene.camera.unwrap().frames[2].position);
+    assert!(position("main.aff").unwrap() != position("main.aff:camera=slide").unwrap());
+    assert_eq!(position("main.aff:camera=camera").unwrap(), position("main.aff").unwrap());
+    let error = position("main.aff:camera=Slide").unwrap_err().to_string();
+    assert!(error.contains("there are no keyframes `Slide`"), "{error}");
+}
+
 /// The thesis's museum and robots: counts, vertices and the grid's row (`thesis/*.csv`) as published. The robots' time is
 /// not published; of whole seconds and of the 800 frames it was looked for (time 6 gives all four numbers).
 #[test]

@@ -265,6 +265,22 @@ fn materials_lights_and_cameras() {
     let pose = camera.frames[0];
     assert_eq!(pose.position, Vec3::new(0.0, 0.0, 9.0));
     assert!(pose.direction.abs_diff_eq(Vec3::Z, 1e-6) && pose.up.abs_diff_eq(Vec3::Y, 1e-6));
+    // The first camera, or the one that is named
+    let document = with(&[
+        ("/cameras", json!([{ "name": "lens", "type": "perspective", "perspective": { "yfov": 1, "znear": 0.1 } }])),
+        ("/nodes/0", json!({ "mesh": 0, "children": [1, 2] })),
+        ("/nodes/-", json!({ "translation": [0, 0, 9], "camera": 0 })),
+        ("/nodes/-", json!({ "name": "back", "translation": [0, 0, -9], "camera": 0 })),
+    ]);
+    let named = |camera: Option<&str>| {
+        let options = Options { camera: camera.map(str::to_owned), ..Options::default() };
+        gltf::read_bytes(Path::new("a.glb"), &glb(&document, &bytes()), &options)
+    };
+    for (camera, z) in [(None, 9.0), (Some("lens"), 9.0), (Some("back"), -9.0)] {
+        assert_eq!(named(camera).unwrap().camera.unwrap().frames[0].position.z, z, "{camera:?}");
+    }
+    let error = named(Some("front")).unwrap_err().to_string();
+    assert!(error.contains("there is no camera `front`"), "{error}");
     // What shines is a light where there is no other.
     let lamp = load(&with(&[
         ("/materials", json!([{ "emissiveFactor": [1, 1, 0.5] }])),
