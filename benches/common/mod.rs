@@ -149,6 +149,7 @@ pub fn median(values: &[f64]) -> f64 {
 pub fn sign_test_interval(values: &[f64]) -> (f64, f64) {
     let sorted = sorted(values);
     let n = sorted.len();
+    assert!(n <= 1000, "half to the power of the number of values must be a float above zero");
     // P(at most k of n are below the median), k growing, until a tail would exceed 2.5 %.
     let (mut k, mut tail, mut term) = (0, 0.0, 0.5_f64.powi(n as i32));
     while tail + term <= 0.025 {

@@ -131,6 +131,30 @@ mod tests {
         }
     }
 
+    /// Of every length before and behind the point, with every kind of byte behind it, up to the end of the slice and not.
+    #[test]
+    fn digits_of_any_number() {
+        let pool = "9182736450918273645";
+        for whole in 0..=pool.len() {
+            for places in 0..=pool.len() - whole {
+                let point = if places > 0 { "." } else { "" };
+                let text = format!("{}{point}{}", &pool[..whole], &pool[whole..whole + places]);
+                let expected: Option<f64> = text.parse().ok();
+                for behind in ["", " ", "\n7", "\t00000000000", " \u{e9}\u{ffff}-----"] {
+                    let line = format!("{text}{behind}");
+                    assert_eq!(double(line.as_bytes()), expected.map(|x| (x, text.len())), "{line}");
+                    let whole: Option<i64> = text.parse().ok().filter(|_| text.len() <= 18);
+                    assert_eq!(integer(line.as_bytes()), whole.map(|x| (x, text.len())), "{line}");
+                }
+                // Bytes on either side of the digits
+                for byte in (0..=255).filter(|b| *b > b' ' && !b"0123456789.eE+-".contains(b)) {
+                    let line = [text.as_bytes(), &[byte], b"12345678"].concat();
+                    assert_eq!((double(&line), integer(&line)), (None, None), "{text} {byte}");
+                }
+            }
+        }
+    }
+
     #[test]
     fn refuses_what_is_no_number() {
         for text in ["", "-", "+", ".", "-.", "1..2", "1,5", "1e", "0x10", "one", "1-", "--1", "1_000"] {
