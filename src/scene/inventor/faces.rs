@@ -249,6 +249,17 @@ impl<'t> Choice<'t> {
         self.indices.map(|(field, _)| field)
     }
 
+    /// True if so many normals or materials are enough for these faces, which can be seen without a look at each. There may be
+    /// enough where this says no.
+    pub fn is_within(&self, count: usize, faces: &Faces) -> bool {
+        match self.binding {
+            Binding::Overall => count > 0,
+            // A corner without indices has the number of its coordinate
+            Binding::Vertex => matches!(faces.runs, Runs::Counted(_)) && count >= faces.coordinates.len(),
+            Binding::Part | Binding::Face => false,
+        }
+    }
+
     /// The index for a corner of a face.
     pub fn index(&self, face: &Face, corner: &Corner) -> Result<usize, Fault> {
         let (at, number) = match self.binding {

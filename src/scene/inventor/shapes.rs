@@ -171,6 +171,9 @@ impl Reader {
         let given = state.normals.len() / 3;
         if given > 0 {
             let choice = Choice::of(node, "normalIndex", state.normal_binding)?;
+            if choice.is_within(given, faces) {
+                return Ok(Normals::Given(choice));
+            }
             let mut needed = 0;
             faces.visit(&mut |face: Face| {
                 for corner in face.corners {
