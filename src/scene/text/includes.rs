@@ -18,7 +18,9 @@ const TIMES: usize = 200;
 
 /// The files of a scene.
 pub struct Includes {
-    /// The folder of the first file, without links.
+    /// The first file, as it was named, and its bytes.
+    first: (PathBuf, Rc<Vec<u8>>),
+    /// Its folder, without links; empty until something is included, for most files include nothing.
     root: PathBuf,
     outside: bool,
     /// Bytes by the file's path without links.
@@ -39,12 +41,26 @@ impl Includes {
     /// The file cannot be read.
     pub fn new(path: &Path, outside: bool) -> Result<(Includes, Rc<Vec<u8>>)> {
         let bytes = Rc::new(crate::scene::read_file(path)?);
-        let whole = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-        let root = whole.parent().map(Path::to_owned).unwrap_or_default();
-        let files = HashMap::from([(whole.clone(), Rc::clone(&bytes))]);
-        let size = bytes.len();
-        let includes = Includes { root, outside, files, open: vec![whole], readings: 0, bytes: size, passed: size };
+        let includes = Includes {
+            first: (path.to_owned(), Rc::clone(&bytes)),
+            root: PathBuf::new(),
+            outside,
+            files: HashMap::new(),
+            open: Vec::new(),
+            readings: 0,
+            bytes: bytes.len(),
+            passed: bytes.len(),
+        };
         Ok((includes, bytes))
+    }
+
+    /// Finds out where the first file is.
+    fn locate(&mut self) {
+        let (path, bytes) = &self.first;
+        let whole = path.canonicalize().unwrap_or_else(|_| path.clone());
+        self.root = whole.parent().map(Path::to_owned).unwrap_or_default();
+        self.files.insert(whole.clone(), Rc::clone(bytes));
+        self.open.push(whole);
     }
 
     /// Bytes of all files so far, each counted once.
@@ -61,6 +77,9 @@ impl Includes {
         let fault = |problem: &str, mend: String| {
             Err(Fault::new(None, format!("include {}: {problem}", quote_bytes(name)), mend))
         };
+        if self.open.is_empty() {
+            self.locate();
+        }
         let shown = including.with_file_name("").join(String::from_utf8_lossy(name).as_ref());
         let whole = match shown.canonicalize() {
             Ok(whole) => whole,
