@@ -145,7 +145,8 @@ pub fn median(values: &[f64]) -> f64 {
     (sorted[(n - 1) / 2] + sorted[n / 2]) / 2.0
 }
 
-/// The values between which the median lies with a probability of at least 95 % (all of them, if there are too few).
+/// The values between which the median lies with a probability of at least 95 % (all of them, if there are too few;
+/// of a thousand at most).
 pub fn sign_test_interval(values: &[f64]) -> (f64, f64) {
     let sorted = sorted(values);
     let n = sorted.len();

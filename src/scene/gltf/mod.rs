@@ -5,9 +5,10 @@
 //!
 //! What is taken: the default scene (else the first, else all nodes), every mesh once per node that shows it, in the
 //! order of the nodes; triangles, strips and fans. A primitive without normals is flat, as the format demands. The first
-//! perspective camera is the scene's, or the one that `camera=` names. Materials: see [`material`]. Punctual lights become point lights: a spot shines
-//! all around, a directional light stands ten diagonals away; since our lights do not fade, their colours are scaled
-//! so that together their brightest channel is 1. Without any, surfaces that shine become lights ([`super::lamps`]).
+//! perspective camera is the scene's, or the one that `camera=` names. Materials: see [`material`]. Punctual lights become
+//! point lights: a spot shines all around, a directional light stands ten diagonals away; since our lights do not fade, their
+//! colours are scaled so that together their brightest channel is 1. Without any, surfaces that shine become lights
+//! ([`super::lamps`]).
 //!
 //! What is not: textures, skins, morph targets, animations (the pose of the nodes counts), points and lines.
 

@@ -6,7 +6,7 @@ use crate::math::Vertex;
 use crate::scene::{MAX_ELEMENTS, Triangle, lamps, text};
 use glam::{DMat4, Vec3};
 use gltf::mesh::Mode;
-use gltf::{Node, Primitive};
+use gltf::{Accessor, Node, Primitive};
 
 /// What a primitive becomes.
 struct Need {
@@ -59,9 +59,7 @@ impl Walk<'_> {
         if !is_surface(primitive.mode()) {
             return Ok(None);
         }
-        let Some(positions) = primitive.get(&gltf::Semantic::Positions) else {
-            return Err(("a primitive has no positions".into(), "export the file again"));
-        };
+        let positions = positions(primitive)?;
         accessor::check(&positions, self.buffers)?;
         if let Some(indices) = primitive.indices() {
             accessor::check_indices(&indices, self.buffers)?;
@@ -84,6 +82,12 @@ impl Walk<'_> {
             lamps: if shines { triangles.saturating_mul(lamps::BYTES) } else { 0 },
         }))
     }
+}
+
+/// The accessor of a surface's positions.
+pub fn positions<'a>(primitive: &Primitive<'a>) -> Result<Accessor<'a>, Fault> {
+    let positions = primitive.get(&gltf::Semantic::Positions);
+    positions.ok_or_else(|| ("a primitive has no positions".into(), "export the file again"))
 }
 
 /// False for points and lines.

@@ -1,7 +1,7 @@
 //! The walk over the nodes, which collects the scene.
 
 use super::buffers::Buffers;
-use super::room::{is_surface, too_much};
+use super::room::{is_surface, positions, too_much};
 use super::{Fault, accessor, material};
 use crate::math::Vertex;
 use crate::scene::mesh_builder::Limits;
@@ -138,13 +138,11 @@ impl<'a> Walk<'a> {
 
     /// Adds a primitive's triangles, at their place in the world.
     fn primitive(&mut self, primitive: &Primitive, world: &DMat4) -> Result<(), Fault> {
-        let positions = match primitive.get(&gltf::Semantic::Positions) {
-            Some(positions) if is_surface(primitive.mode()) => accessor::vectors(&positions, self.buffers)?,
-            _ => {
-                self.no_surface += 1;
-                return Ok(());
-            }
-        };
+        if !is_surface(primitive.mode()) {
+            self.no_surface += 1;
+            return Ok(());
+        }
+        let positions = accessor::vectors(&positions(primitive)?, self.buffers)?;
         let given = match primitive.get(&gltf::Semantic::Normals) {
             Some(normals) => Some(accessor::vectors(&normals, self.buffers)?),
             None => None,

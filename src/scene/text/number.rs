@@ -25,6 +25,12 @@ fn is_blank(byte: u8) -> bool {
     byte <= b' '
 }
 
+/// True where a blank byte, or the end of the slice, ends a number.
+#[inline(always)]
+fn ends(bytes: &[u8], at: usize, blank: impl Fn(u8) -> bool) -> bool {
+    bytes.get(at).is_none_or(|&b| blank(b))
+}
+
 /// A plain decimal: digits with at most one point, no exponent, at most 19 digits.
 struct Decimal {
     negative: bool,
@@ -57,8 +63,7 @@ fn decimal(bytes: &[u8], blank: impl Fn(u8) -> bool) -> Option<Decimal> {
         places = at - start;
         digits += places;
     }
-    let ends = bytes.get(at).is_none_or(|&b| blank(b));
-    ((1..=19).contains(&digits) && ends).then_some(Decimal { negative, mantissa, places, length: at })
+    ((1..=19).contains(&digits) && ends(bytes, at, blank)).then_some(Decimal { negative, mantissa, places, length: at })
 }
 
 /// A number in single precision, correctly rounded; also infinite or NaN, if the text says so.
@@ -101,7 +106,7 @@ pub fn integer(bytes: &[u8]) -> Option<(i64, usize)> {
         value = value.wrapping_mul(10).wrapping_add(digit.into());
         at += 1;
     }
-    ((1..=18).contains(&(at - start)) && bytes.get(at).is_none_or(|&b| is_blank(b)))
+    ((1..=18).contains(&(at - start)) && ends(bytes, at, is_blank))
         .then_some((if negative { value.wrapping_neg() } else { value }, at))
 }
 

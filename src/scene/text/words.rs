@@ -113,16 +113,7 @@ impl<'a> Words<'a> {
     #[inline]
     fn seek(&mut self) {
         while let Some(&byte) = self.bytes.get(self.at) {
-            let class = self.syntax.class(byte);
-            // Most bytes are one of these: to ask for them first takes a twentieth less time
-            if class == Class::Blank {
-                self.at += 1;
-                continue;
-            }
-            if class == Class::Word {
-                return;
-            }
-            match class {
+            match self.syntax.class(byte) {
                 Class::Blank => {}
                 Class::LineEnd => self.end_line(),
                 Class::Comment => {

@@ -86,7 +86,7 @@ fn obj() {
         // The file is its own library
         (format!("{CORNERS}f 1 2 3\n{}", "mtllib main.obj\n".repeat(30_000)), ""),
         (format!("{CORNERS}s off\n{}", "f 1 2 3\n".repeat(1_000_000)), "MiB of memory"),
-        (format!("{CORNERS}f {}\n", "1 2 3 ".repeat(500_000)), "MiB of memory"),
+        (format!("{CORNERS}f {}\n", "1 2 3 ".repeat(2_000_000)), "MiB of memory"),
         (materials, "there is no face"),
     ] {
         load("main.obj", text.as_bytes(), words);
