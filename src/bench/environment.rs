@@ -62,7 +62,15 @@ pub fn program() -> Program {
         target: env!("RTBENCH_TARGET").into(),
         lock_hash: blake3::hash(lock.as_bytes()).to_hex().to_string(),
         packages: PACKAGES.iter().filter_map(|&name| Some((name.into(), locked_version(lock, name)?))).collect(),
+        executable_hash: executable_hash(),
     }
+}
+
+/// BLAKE3 of the running program's file.
+fn executable_hash() -> Option<String> {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update_reader(std::fs::File::open(std::env::current_exe().ok()?).ok()?).ok()?;
+    Some(hasher.finalize().to_hex().to_string())
 }
 
 /// The version of one of our own dependencies in our `Cargo.lock`. Where others bring further versions of it, our entry

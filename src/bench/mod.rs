@@ -7,5 +7,6 @@ pub mod measure;
 pub mod pictures;
 pub mod plan;
 pub mod preset;
+pub mod resume;
 pub mod sweep;
 pub mod verify;

@@ -9,6 +9,7 @@ use crate::camera::View;
 use crate::error::{Error, Result};
 use crate::results::files;
 use crate::results::picture::{self, FOLDER, STEPS};
+use std::path::{Path, PathBuf};
 
 /// The longer side of a picture, in pixels.
 const SIDE: u32 = 448;
@@ -17,8 +18,7 @@ const SIDE: u32 = 448;
 const STRUCTURE: &str = "bvh-stack";
 
 /// Renders both pictures on the measured device: the middle frame of the richest configuration's path, or the first one if
-/// the camera stands still. A device that
-/// cannot make them is mentioned and stops nothing.
+/// the camera stands still. A device that cannot make them is mentioned and stops nothing.
 ///
 /// # Errors
 /// [`Error::Output`], or a lost device.
@@ -50,9 +50,20 @@ pub fn take(context: &mut Context, subject: &Subject, backend: &dyn Backend, tre
     };
     let folder = context.out.join(FOLDER);
     std::fs::create_dir_all(&folder).map_err(|source| Error::output(&folder, source))?;
+    let [image_file, steps_file] = places(context.out, scene);
+    picture::write_png(&image_file, width, height, &image)?;
+    picture::write_png(&steps_file, width, height, &steps)
+}
+
+/// Where a scene's pictures stand in a run's folder: the image, and the heat map of its steps.
+fn places(out: &Path, scene: &str) -> [PathBuf; 2] {
     let name = files::slug(scene);
-    picture::write_png(&folder.join(format!("{name}.png")), width, height, &image)?;
-    picture::write_png(&folder.join(format!("{name}{STEPS}.png")), width, height, &steps)
+    ["", STEPS].map(|end| out.join(FOLDER).join(format!("{name}{end}.png")))
+}
+
+/// True if both pictures of a scene are there, from an earlier session of the run.
+pub fn are_there(out: &Path, scene: &str) -> bool {
+    places(out, scene).iter().all(|path| path.is_file())
 }
 
 /// One frame by the timed kernel, RGBA8.

@@ -5,12 +5,15 @@ use super::configuration::{self, Candidate, Context, Subject};
 use super::environment;
 use super::pictures;
 use super::plan::{self, Path, Plan, Task};
+use super::resume::Earlier;
 use super::verify::Verifier;
 use crate::accel::{Built, Selection};
 use crate::backend::{Backend, Config, Interrupted, Prepared, Size};
 use crate::error::{Error, Result};
 use crate::results::journal::{self, Journal, JournalWriter};
-use crate::results::record::{ConfigurationRecord, End, Failure, Memory, Provenance, Record, SCHEMA, StructureRecord};
+use crate::results::record::{
+    ConfigurationRecord, End, Failure, Memory, Provenance, Record, Resumed, SCHEMA, Status, StructureRecord,
+};
 use crate::results::summary::Run;
 use crate::scene::Scene;
 use std::collections::{HashMap, VecDeque};
@@ -33,6 +36,8 @@ pub enum Event<'a> {
     Work(u64),
     /// A configuration has its record.
     Finished(&'a ConfigurationRecord),
+    /// An earlier session settled a configuration of this much work.
+    Kept(u64),
     /// Something that the user should read.
     Note(String),
 }
@@ -41,8 +46,10 @@ pub enum Event<'a> {
 pub struct Job<'a> {
     /// What to measure.
     pub plan: &'a Plan,
-    /// Folder of the run; new or empty.
+    /// Folder of the run; new or empty, but for a run that is taken up again.
     pub out: &'a std::path::Path,
+    /// What is there of it already.
+    pub earlier: Earlier,
     /// Threads for building, 0 for all.
     pub threads: usize,
     /// Command line.
@@ -84,7 +91,13 @@ pub fn run(job: Job) -> Result<Outcome> {
         environment: environment::capture(),
         plan: job.plan.record(),
     };
-    let mut journal = JournalWriter::create(job.out, provenance)?;
+    job.earlier.check(&provenance)?;
+    let mut journal = if job.earlier.provenance().is_some() {
+        let Provenance { started, arguments, environment, .. } = provenance;
+        JournalWriter::resume(job.out, Resumed { started, arguments, environment })?
+    } else {
+        JournalWriter::create(job.out, provenance)?
+    };
     let exact = job.device.backend.info().is_exact();
     let (plan, out) = (job.plan, job.out);
     let mut sweep = Sweep {
@@ -93,6 +106,7 @@ pub fn run(job: Job) -> Result<Outcome> {
         device_name: job.device.backend.info().name.clone(),
         device: Some(job.device),
         open: job.open,
+        earlier: job.earlier,
         journal: &mut journal,
     };
     let ended = plan.scenes().into_iter().try_for_each(|what| sweep.scene(what));
@@ -125,8 +139,12 @@ struct Sweep<'a, 'j> {
     device: Option<Opened>,
     device_name: String,
     open: &'a dyn Fn() -> Result<Opened>,
+    earlier: Earlier,
     journal: &'j mut JournalWriter,
 }
+
+/// A structure and its rows that are still to be measured: which path, which size.
+type Waiting<'p> = (&'p Selection, VecDeque<(usize, Size)>);
 
 impl Sweep<'_, '_> {
     fn say(&mut self, event: Event) {
@@ -148,35 +166,42 @@ impl Sweep<'_, '_> {
                 paths.push((task.config, task.frames, plan.path(&scene, task.config, task.frames)?));
             }
         }
+        let record = plan::scene_record(&scene);
+        self.earlier.check_scene(&record, paths.iter().map(|(_, _, path)| path))?;
         // The reference is traced through this tree, and confirmed by brute force (see `verify`).
         let reference_selection = Selection::parse("bvh")?;
         let reference = reference_selection.build(&scene, self.threads)?;
         let mut subject = Subject {
             scene: &scene,
-            record: plan::scene_record(&scene),
+            record,
             what: what.to_owned(),
             paths,
             verifier: Verifier::new(&scene, &reference.structure)?,
             images: HashMap::new(),
         };
         // Each distinct tree is built once, serves all traversals over it, and is freed before the next is built.
-        let mut waiting = plan.selections(what);
-        while let Some(&first) = waiting.first() {
+        let mut waiting: Vec<Waiting> =
+            plan.selections(what).into_iter().map(|s| (s, self.waiting(&mut subject, s))).collect();
+        waiting.retain(|(_, rows)| !rows.is_empty());
+        if waiting.is_empty() && pictures::are_there(self.context.out, &subject.record.name) {
+            return Ok(());
+        }
+        while let Some(&(first, _)) = waiting.first() {
             self.context.check_interrupt()?;
-            let (same, others): (Vec<_>, Vec<_>) =
-                waiting.into_iter().partition(|s| s.build_key() == first.build_key());
+            let (same, others): (Vec<Waiting>, Vec<Waiting>) =
+                waiting.into_iter().partition(|(s, _)| s.build_key() == first.build_key());
             waiting = others;
             if first.build_key() == reference_selection.build_key() {
-                self.structures(&mut subject, &same, &reference)?;
+                self.structures(&mut subject, same, &reference)?;
                 continue;
             }
             self.say(Event::Doing(format!("building {} of {}", first.name(), scene.name)));
             match first.build(&scene, self.threads) {
-                Ok(built) => self.structures(&mut subject, &same, &built)?,
+                Ok(built) => self.structures(&mut subject, same, &built)?,
                 // What cannot be built for this scene is no reason to leave the others unmeasured.
                 Err(Error::Device(message)) => {
-                    for selection in same {
-                        for (path, size) in configurations(plan, &subject, selection) {
+                    for (selection, rows) in same {
+                        for (path, size) in rows {
                             self.unable(&subject, selection, None, path, size, &message)?;
                         }
                     }
@@ -186,6 +211,28 @@ impl Sweep<'_, '_> {
         }
         // Last: what is measured matters more where the disk is about to be full
         self.pictures(&subject, &reference)
+    }
+
+    /// The rows of a structure on a scene that no earlier session settled. The images of those that one did stay, to
+    /// compare others with.
+    fn waiting(&mut self, subject: &mut Subject, selection: &Selection) -> VecDeque<(usize, Size)> {
+        let plan = self.context.plan;
+        let mut waiting = VecDeque::new();
+        for Task { config, size, frames } in plan.tasks(&subject.what, selection) {
+            let of_task = |(of, thinned, _): &(Config, Option<usize>, Path)| (*of, *thinned) == (config, frames);
+            let Some(path) = subject.paths.iter().position(of_task) else { continue };
+            match self.earlier.row(&configuration::blank(plan, subject, selection, path, size)) {
+                Some(row) => {
+                    if let (Status::Ok, Some(hash)) = (row.status, &row.image_hash) {
+                        let key = (config, size, selection.method().rays());
+                        subject.images.entry(key).or_insert((row.structure.clone(), hash.clone()));
+                    }
+                    (self.context.watch)(Event::Kept(plan.work(config, size, &subject.paths[path].2.views)));
+                }
+                None => waiting.push_back((path, size)),
+            }
+        }
+        waiting
     }
 
     /// Take a scene's pictures. They are not worth opening a lost device again; one that is lost over them is opened
@@ -208,15 +255,20 @@ impl Sweep<'_, '_> {
     }
 
     /// Measure all traversals over one built structure.
-    fn structures(&mut self, subject: &mut Subject, selections: &[&Selection], built: &Built) -> Result<()> {
-        selections.iter().try_for_each(|selection| self.structure(subject, selection, built))
+    fn structures(&mut self, subject: &mut Subject, waiting: Vec<Waiting>, built: &Built) -> Result<()> {
+        waiting.into_iter().try_for_each(|(selection, rows)| self.structure(subject, selection, rows, built))
     }
 
     /// Measure all configurations of one structure and traversal. A lost device costs the configuration that lost it,
     /// and is opened again for the next.
-    fn structure(&mut self, subject: &mut Subject, selection: &Selection, built: &Built) -> Result<()> {
+    fn structure(
+        &mut self,
+        subject: &mut Subject,
+        selection: &Selection,
+        mut waiting: VecDeque<(usize, Size)>,
+        built: &Built,
+    ) -> Result<()> {
         let scene = subject.scene;
-        let mut waiting = VecDeque::from(configurations(self.context.plan, subject, selection));
         let mut candidate = Candidate { selection, built, memory: Memory::default(), small: HashMap::new() };
         let mut recorded = false;
         while !waiting.is_empty() {
@@ -232,7 +284,9 @@ impl Sweep<'_, '_> {
                     candidate.memory = memory(built, scene, prepared.as_ref().ok().map(|p| p.allocated()));
                     let mut record = configuration::structure_record(subject, selection, built);
                     record.memory = candidate.memory;
-                    self.journal.write(&Record::Structure(Box::new(record.clone())))?;
+                    if !self.earlier.has_structure(&record) {
+                        self.journal.write(&Record::Structure(Box::new(record.clone())))?;
+                    }
                     self.say(Event::Built(&record));
                 }
                 match prepared {
@@ -324,16 +378,6 @@ impl Sweep<'_, '_> {
         }
         Ok(device)
     }
-}
-
-/// All rows of a structure on a scene: which path, which size.
-fn configurations(plan: &Plan, subject: &Subject, selection: &Selection) -> Vec<(usize, Size)> {
-    let path_of = |task: &Task| {
-        let same =
-            |(config, frames, _): &(Config, Option<usize>, Path)| (*config, *frames) == (task.config, task.frames);
-        subject.paths.iter().position(same)
-    };
-    plan.tasks(&subject.what, selection).iter().filter_map(|task| Some((path_of(task)?, task.size))).collect()
 }
 
 /// Sizes: as allocated on the device (geometry, structure) where it was, in main memory otherwise.

@@ -80,6 +80,11 @@ pub fn main() -> ExitCode {
     }
 }
 
+/// The command that a recorded command line gave; none if this program does not know it.
+fn parse(recorded: &[String]) -> Option<Command> {
+    Some(Cli::try_parse_from(recorded).ok()?.command)
+}
+
 fn run(command: Command) -> Result<ExitCode> {
     let done = |()| ExitCode::SUCCESS;
     match command {

@@ -53,6 +53,11 @@ impl Progress {
             }
             Event::Built(_) => {}
             Event::Finished(record) => self.finished(record),
+            Event::Kept(work) => {
+                self.finished += 1;
+                self.done = (self.done + work).min(self.work);
+                self.last = (self.done, Instant::now());
+            }
             Event::Note(text) => self.line(&text),
         }
     }

@@ -6,10 +6,11 @@ use super::output;
 use super::progress::Progress;
 use crate::bench::environment;
 use crate::bench::plan::{Plan, Request};
+use crate::bench::resume::Earlier;
 use crate::bench::sweep::{self, Job};
 use crate::error::{Error, Result};
 use crate::results::record::Status;
-use crate::results::{files, table};
+use crate::results::{files, journal, table};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -56,6 +57,9 @@ pub struct Arguments {
     /// Folder for the results, new or empty [default: results/TIME-DEVICE]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
+    /// Go on with the run in this folder, by the flags it began with: rows that it has are kept
+    #[arg(long, value_name = "FOLDER", exclusive = true)]
+    resume: Option<PathBuf>,
     /// No progress, no table: only errors
     #[arg(long, short)]
     quiet: bool,
@@ -77,13 +81,32 @@ Examples:
       without any GPU or driver
 
 In the folder of results: journal.jsonl (everything, one record per line), summary.csv, structures.csv, run.json.
-Ctrl-C ends a sweep in order: what was measured is kept.";
+Ctrl-C ends a sweep in order: what was measured is kept, and `rtbench sweep --resume FOLDER` measures the rest. It goes
+on only with the same build of the program on the same device, with scenes and camera paths that have not changed.";
 
 /// Runs the command.
 ///
 /// # Errors
 /// What could not run; wrong answers are the exit code 1.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
+    let Some(folder) = &arguments.resume else { return measure(arguments, Earlier::default()) };
+    let earlier = Earlier::read(folder)?;
+    if earlier.is_complete() {
+        output::note(&format!("nothing is left to measure in {}", folder.display()));
+        return Ok(ExitCode::SUCCESS);
+    }
+    let recorded = earlier.provenance().map(|provenance| &provenance.arguments[..]).unwrap_or_default();
+    match super::parse(recorded) {
+        Some(super::Command::Sweep(began)) => measure(&Arguments { out: Some(folder.clone()), ..began }, earlier),
+        _ => {
+            let problem = format!("it began with a command that this program does not know: {}", recorded.join(" "));
+            Err(Error::file(&folder.join(journal::FILE_NAME), Some(1), problem, "begin a new run"))
+        }
+    }
+}
+
+/// Measures what is planned and not there yet.
+fn measure(arguments: &Arguments, earlier: Earlier) -> Result<ExitCode> {
     let mut plan = Plan::new(&Request {
         preset: arguments.preset.clone(),
         scenes: arguments.scene.clone(),
@@ -101,7 +124,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         output::note(&format!("left out: {absent}"));
     }
     arguments.device.check()?;
-    if let Some(out) = &arguments.out {
+    if let (Some(out), None) = (&arguments.out, earlier.provenance()) {
         files::create_run_folder(out)?;
     }
     let work: u64 = plan.survey()?.iter().sum();
@@ -118,9 +141,13 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     let stop = ctrl_c()?;
     let interrupted = || stop.load(Ordering::Relaxed);
     let mut progress = Progress::new(plan.configurations(), work, arguments.quiet);
+    if earlier.settled() > 0 && !arguments.quiet {
+        output::note(&format!("{} of {} rows are there already", earlier.settled(), plan.configurations()));
+    }
     let outcome = sweep::run(Job {
         plan: &plan,
         out: &out,
+        earlier,
         threads: arguments.device.threads,
         arguments: std::env::args_os().map(|a| a.to_string_lossy().into_owned()).collect(),
         device,
@@ -129,7 +156,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         watch: &mut |event| progress.event(event),
     });
     progress.end();
-    let outcome = outcome.inspect_err(|_| tell_where(&out))?;
+    let outcome = outcome.inspect_err(|error| tell_where(&out, error))?;
 
     if !arguments.quiet {
         output::print(&table::run(&outcome.run))?;
@@ -151,9 +178,15 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
 }
 
 /// Tells where the rows are that were measured before a sweep broke off.
-fn tell_where(out: &Path) {
-    if out.join(crate::results::journal::FILE_NAME).is_file() {
-        output::note(&format!("what was measured is in {}", out.display()));
+fn tell_where(out: &Path, error: &Error) {
+    if out.join(journal::FILE_NAME).is_file() {
+        let out = out.display();
+        let rest = match error {
+            // Nothing can be resumed until the input is mended, and then perhaps not either.
+            Error::Input(_) => String::new(),
+            _ => format!("; for the rest: rtbench sweep --resume {out}"),
+        };
+        output::note(&format!("what was measured is in {out}{rest}"));
     }
 }
 

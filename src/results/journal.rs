@@ -1,8 +1,9 @@
 //! The journal of a run: append-only, one JSON record per line, on disk as soon as it is written.
 
 use super::files;
-use super::record::{ConfigurationRecord, End, Provenance, Record, SCHEMA, StructureRecord};
+use super::record::{ConfigurationRecord, End, Identity, Provenance, Record, Resumed, SCHEMA, StructureRecord};
 use crate::error::{Error, Result};
+use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -33,6 +34,23 @@ impl JournalWriter {
             .map_err(|source| Error::output(&path, source))?;
         let mut writer = JournalWriter { path, file, length: 0 };
         writer.write(&Record::Run(Box::new(provenance)))?;
+        Ok(writer)
+    }
+
+    /// Opens the journal of a run that is taken up again, cuts off what is left of a half-written last line, and notes
+    /// the resumption.
+    ///
+    /// # Errors
+    /// [`Error::Output`].
+    pub fn resume(folder: &Path, resumed: Resumed) -> Result<JournalWriter> {
+        let path = folder.join(FILE_NAME);
+        let output = |source| Error::output(&path, source);
+        let bytes = std::fs::read(&path).map_err(output)?;
+        let length = bytes.iter().rposition(|&b| b == b'\n').map_or(0, |end| end as u64 + 1);
+        let file = OpenOptions::new().append(true).open(&path).map_err(output)?;
+        file.set_len(length).map_err(output)?;
+        let mut writer = JournalWriter { path, file, length };
+        writer.write(&Record::Resumed(Box::new(resumed)))?;
         Ok(writer)
     }
 
@@ -72,8 +90,10 @@ pub struct Journal {
     pub provenance: Provenance,
     /// In the order of building.
     pub structures: Vec<StructureRecord>,
-    /// In the order of measuring.
+    /// In the order of measuring; one that was tried again after the run was resumed stands where it first stood.
     pub configurations: Vec<ConfigurationRecord>,
+    /// Each time that the run was taken up again.
+    pub resumed: Vec<Resumed>,
     /// Last line, if the run ended in order.
     pub end: Option<End>,
     /// What had to be left out, in words: a last line that was cut off.
@@ -98,6 +118,8 @@ impl Journal {
     pub fn parse(path: &Path, bytes: &[u8]) -> Result<Journal> {
         let mut provenance: Option<Provenance> = None;
         let (mut structures, mut configurations, mut end, mut truncated) = (Vec::new(), Vec::new(), None, None);
+        let mut resumed = Vec::new();
+        let mut places: HashMap<Identity, usize> = HashMap::new();
         for (index, line) in bytes.split_inclusive(|&b| b == b'\n').enumerate() {
             let number = index + 1;
             let record = match serde_json::from_slice::<Record>(line) {
@@ -125,12 +147,25 @@ impl Journal {
                     return Err(Error::file(path, Some(number), "a second provenance", mend));
                 }
                 (Record::Structure(structure), true) => structures.push(*structure),
-                (Record::Configuration(configuration), true) => configurations.push(*configuration),
+                (Record::Configuration(configuration), true) => {
+                    // Without a resumption nothing is measured twice, and nothing is taken for it
+                    match places.get(&configuration.identity()) {
+                        Some(&place) if !resumed.is_empty() => configurations[place] = *configuration,
+                        _ => {
+                            places.insert(configuration.identity(), configurations.len());
+                            configurations.push(*configuration);
+                        }
+                    }
+                }
                 (Record::End(last), true) => end = Some(last),
+                (Record::Resumed(again), true) => {
+                    resumed.push(*again);
+                    end = None;
+                }
             }
         }
         match provenance {
-            Some(provenance) => Ok(Journal { provenance, structures, configurations, end, truncated }),
+            Some(provenance) => Ok(Journal { provenance, structures, configurations, resumed, end, truncated }),
             None => Err(Error::file(path, None, "empty", "the run was killed before it began")),
         }
     }

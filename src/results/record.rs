@@ -20,6 +20,8 @@ pub enum Record {
     Configuration(Box<ConfigurationRecord>),
     /// The run ended in order; absent where it was killed.
     End(End),
+    /// It was taken up again: what follows was measured from here on.
+    Resumed(Box<Resumed>),
 }
 
 /// Everything that one has to know to believe, repeat or refuse a run's numbers.
@@ -62,6 +64,9 @@ pub struct Program {
     pub lock_hash: String,
     /// Versions of the packages that decide what a kernel becomes.
     pub packages: BTreeMap<String, String>,
+    /// BLAKE3 of the program's file: tells two builds of one changed revision apart. Absent where it cannot be read.
+    #[serde(default)]
+    pub executable_hash: Option<String>,
 }
 
 /// The machine, at the start of a run.
@@ -87,6 +92,17 @@ pub struct Environment {
     pub load_average: [f64; 3],
     /// Variables that change what is measured (`LP_NUM_THREADS`, `VK_*`, ...).
     pub variables: BTreeMap<String, String>,
+}
+
+/// A run that is taken up again, by the same program on the same device.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Resumed {
+    /// Start, UTC, RFC 3339.
+    pub started: String,
+    /// Command line, the program's name included.
+    pub arguments: Vec<String>,
+    /// The machine around the device, at this time.
+    pub environment: Environment,
 }
 
 /// What was to be measured.
@@ -272,6 +288,21 @@ pub struct Samples {
     pub pass_ns: Vec<u64>,
 }
 
+/// What tells one row of a run from another: everything that was asked for. A scene or path whose content changed is
+/// another one.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Identity {
+    scene_hash: String,
+    path_hash: String,
+    structure: String,
+    variant: String,
+    config: Config,
+    width: u32,
+    height: u32,
+    frames: usize,
+    passes: usize,
+}
+
 /// One row of the summary.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ConfigurationRecord {
@@ -364,6 +395,27 @@ impl ConfigurationRecord {
             verification_s: 0.0,
             counting_s: 0.0,
         }
+    }
+
+    /// Which row of a run this is.
+    pub fn identity(&self) -> Identity {
+        Identity {
+            scene_hash: self.scene.hash.clone(),
+            path_hash: self.camera_path.hash.clone(),
+            structure: self.structure.clone(),
+            variant: self.variant.clone(),
+            config: self.config,
+            width: self.width,
+            height: self.height,
+            frames: self.frames,
+            passes: self.passes,
+        }
+    }
+
+    /// True if measuring it again could not tell more: it has a result, or its answer was wrong. What the device refused
+    /// or broke over is worth another attempt.
+    pub fn is_settled(&self) -> bool {
+        self.failure != Some(Failure::Device)
     }
 }
 

@@ -6,7 +6,8 @@
 use super::files;
 use super::journal::Journal;
 use super::record::{
-    ConfigurationRecord, CounterSums, End, Provenance, Samples, SceneRecord, Status, StructureRecord, TimingSource,
+    ConfigurationRecord, CounterSums, End, Provenance, Resumed, Samples, SceneRecord, Status, StructureRecord,
+    TimingSource,
 };
 use super::statistics::{self, FrameStatistics};
 use crate::backend::{Config, DeviceInfo, DeviceType};
@@ -116,6 +117,9 @@ pub struct Run {
     pub structures: Vec<StructureRow>,
     /// The rows of `summary.csv`.
     pub configurations: Vec<Row>,
+    /// Each time that the run was taken up again; absent where it ran in one go.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub resumed: Vec<Resumed>,
     /// How the run ended; null where it was killed.
     pub end: Option<End>,
 }
@@ -274,6 +278,7 @@ impl Run {
             scenes,
             structures: journal.structures.iter().map(StructureRow::new).collect(),
             configurations: journal.configurations.iter().map(|c| Row::new(device, c)).collect(),
+            resumed: journal.resumed.clone(),
             end: journal.end.clone(),
         }
     }

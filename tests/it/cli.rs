@@ -253,6 +253,50 @@ fn ctrl_c_in_the_middle() {
 }
 
 #[test]
+fn a_sweep_is_resumed_by_the_flags_it_began_with() {
+    let folder = tempfile::tempdir().unwrap();
+    let ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+               element face 4\nproperty list uchar int vertex_indices\nend_header\n\
+               0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 2 3\n3 1 2 3\n";
+    let scene = folder.path().join("pyramid.ply");
+    std::fs::write(&scene, ply).unwrap();
+    let out = folder.path().join("run");
+    let (scene_name, out_name) = (scene.display(), out.display());
+    good(&format!(
+        "sweep --backend cpu --scene {scene_name} --frames 2 --passes 2 --resolution 16,20 --config P \
+         --structure grid,bvh-stack --out {out_name}"
+    ));
+    let journal = out.join(FILE_NAME);
+    let whole = std::fs::read_to_string(&journal).unwrap();
+    let resume = format!("sweep --resume {out_name}");
+    assert!(stderr(&run(&resume)).contains("nothing is left to measure"));
+    assert_eq!(std::fs::read_to_string(&journal).unwrap(), whole);
+
+    // Killed in the middle of its third row
+    let third = whole.match_indices("\"record\":\"configuration\"").nth(2).unwrap().0;
+    std::fs::write(&journal, &whole[..third + 40]).unwrap();
+    let output = run(&resume);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains("2 of 4 rows are there already"), "{}", stderr(&output));
+    let resumed = Journal::read(&journal).unwrap();
+    assert_eq!((resumed.configurations.len(), resumed.structures.len(), resumed.resumed.len()), (4, 2, 1));
+    assert_eq!(resumed.resumed[0].arguments[1..], ["sweep".to_owned(), "--resume".to_owned(), out_name.to_string()]);
+    assert!(resumed.configurations.iter().all(|row| row.status == Status::Ok));
+    assert_eq!(std::fs::read_to_string(out.join("summary.csv")).unwrap().lines().count(), 5);
+    let report = good(&format!("report {out_name} -o /dev/stdout"));
+    assert!(report.contains(&resumed.resumed[0].started), "the report does not tell that the run was resumed");
+
+    // Another scene under the same name, other flags, no run, another command
+    std::fs::write(&journal, &whole[..third + 40]).unwrap();
+    std::fs::write(&scene, ply.replace("0 0 1\n", "0 0 2\n")).unwrap();
+    one_error(&run(&resume), &["journal.jsonl", "pyramid is not the scene that it was", "begin a new run"]);
+    one_error(&run(&format!("{resume} --frames 3")), &["--resume", "cannot be used with"]);
+    one_error(&run(&format!("sweep --resume {}", folder.path().display())), &["journal.jsonl", "cannot read"]);
+    std::fs::write(&journal, whole[..third].replacen("\"sweep\"", "\"swoop\"", 1)).unwrap();
+    one_error(&run(&resume), &["journal.jsonl:1:", "does not know"]);
+}
+
+#[test]
 fn the_thesis_preset_names_what_is_absent() {
     let folder = tempfile::tempdir().unwrap();
     let scenes = folder.path().join("scenes/bunny");

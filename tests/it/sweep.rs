@@ -4,6 +4,7 @@ use crate::fakes::{Fault, Faulty};
 use rtbench::accel::{Selection, Traversal};
 use rtbench::backend::{Config, Size};
 use rtbench::bench::plan::{Plan, Request, check_size, parse_list, parse_size};
+use rtbench::bench::resume::Earlier;
 use rtbench::bench::sweep::{self, Event, Job, Opened, Outcome};
 use rtbench::results::journal::{FILE_NAME, Journal};
 use rtbench::results::record::{Failure, Status};
@@ -30,6 +31,8 @@ struct Swept {
     journal: Journal,
     folder: tempfile::TempDir,
     opened_again: usize,
+    /// Rows of this session.
+    finished: usize,
 }
 
 /// A sweep over `request()` with a fault in the grid's traversal, interrupted after so many rows; the device is opened
@@ -37,11 +40,24 @@ struct Swept {
 fn swept(fault: Fault, rows: usize, again: &dyn Fn(Rc<Cell<bool>>) -> Result<Opened>) -> Swept {
     let folder = tempfile::tempdir().unwrap();
     let plan = Plan::new(&request()).unwrap();
+    sweep_into(folder, &plan, Earlier::default(), fault, rows, again)
+}
+
+/// The same, of a plan, into a folder that may hold an earlier session's rows.
+fn sweep_into(
+    folder: tempfile::TempDir,
+    plan: &Plan,
+    earlier: Earlier,
+    fault: Fault,
+    rows: usize,
+    again: &dyn Fn(Rc<Cell<bool>>) -> Result<Opened>,
+) -> Swept {
     let spent = Rc::new(Cell::new(false));
     let (finished, opened_again) = (RefCell::new(0), Cell::new(0));
     let outcome = sweep::run(Job {
-        plan: &plan,
+        plan,
         out: folder.path(),
+        earlier,
         threads: 1,
         arguments: vec!["rtbench".into()],
         device: device(Faulty::new(fault, Traversal::Grid, spent.clone())),
@@ -57,7 +73,7 @@ fn swept(fault: Fault, rows: usize, again: &dyn Fn(Rc<Cell<bool>>) -> Result<Ope
         },
     });
     let journal = Journal::read(&folder.path().join(FILE_NAME)).unwrap();
-    Swept { outcome, journal, folder, opened_again: opened_again.get() }
+    Swept { outcome, journal, folder, opened_again: opened_again.get(), finished: finished.into_inner() }
 }
 
 fn device(backend: Faulty) -> Opened {
@@ -163,6 +179,92 @@ fn an_interrupt_keeps_the_rows() {
     for file in ["summary.csv", "structures.csv", "run.json"] {
         assert!(swept.folder.path().join(file).is_file(), "{file}");
     }
+}
+
+#[test]
+fn a_run_is_taken_up_where_it_was_interrupted() {
+    let first = swept(Fault::None, 1, &back);
+    let (folder, kept) = (first.folder, first.journal.configurations[0].clone());
+    // Killed while it wrote: half a line more
+    let path = folder.path().join(FILE_NAME);
+    let mut bytes = std::fs::read(&path).unwrap();
+    bytes.extend(b"{\"record\":\"configuration\",\"scene\":");
+    std::fs::write(&path, bytes).unwrap();
+    let earlier = Earlier::read(folder.path()).unwrap();
+    assert_eq!((earlier.settled(), earlier.is_complete()), (1, false));
+    let plan = Plan::new(&request()).unwrap();
+    let second = sweep_into(folder, &plan, earlier, Fault::None, usize::MAX, &back);
+    let outcome = second.outcome.unwrap();
+    assert_eq!((outcome.disagreeing, outcome.failed, second.finished), (0, 0, 3));
+    let journal = &second.journal;
+    assert_eq!((journal.configurations.len(), journal.structures.len(), journal.resumed.len()), (4, 2, 1));
+    assert_eq!(journal.configurations[0], kept);
+    assert!(journal.end.as_ref().unwrap().complete && journal.truncated.is_none());
+    // As if it had run in one go, but for what the clocks say
+    let whole = swept(Fault::None, usize::MAX, &back).journal;
+    let facts = |journal: &Journal| {
+        let rows = journal.configurations.iter();
+        rows.map(|r| (r.identity(), r.counters, r.image_hash.clone(), r.reference_image_hash.clone()))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(facts(journal), facts(&whole));
+    assert!(outcome.run.resumed.len() == 1 && outcome.run.configurations.len() == 4);
+    let earlier = Earlier::read(second.folder.path()).unwrap();
+    assert!(earlier.is_complete() && earlier.settled() == 4);
+}
+
+#[test]
+fn a_row_that_lost_the_device_is_tried_again_and_a_wrong_one_is_not() {
+    let plan = Plan::new(&request()).unwrap();
+    let lost = swept(Fault::LostOnce, usize::MAX, &back);
+    assert_eq!(lost.journal.configurations[1].failure, Some(Failure::Device));
+    let earlier = Earlier::read(lost.folder.path()).unwrap();
+    assert_eq!((earlier.settled(), earlier.is_complete()), (3, false));
+    let again = sweep_into(lost.folder, &plan, earlier, Fault::None, usize::MAX, &back);
+    assert_eq!((again.finished, again.outcome.unwrap().failed), (1, 0));
+    let good_grid = [("grid", Config::P, Status::Ok), ("grid", Config::PS, Status::Ok)];
+    assert_eq!(rows(&again.journal), [good_grid, GOOD_STACK].concat());
+
+    let wrong = swept(Fault::WrongTriangle, 3, &back);
+    let earlier = Earlier::read(wrong.folder.path()).unwrap();
+    let again = sweep_into(wrong.folder, &plan, earlier, Fault::None, usize::MAX, &back);
+    assert_eq!((again.finished, again.outcome.unwrap().disagreeing), (1, 2));
+    assert_eq!(rows(&again.journal), [BAD_GRID, GOOD_STACK].concat());
+}
+
+#[test]
+fn a_run_is_not_taken_up_by_another_program_device_or_plan() {
+    let refused = |change: &dyn Fn(&mut String), plan: &Plan| {
+        let first = swept(Fault::None, 1, &back);
+        let path = first.folder.path().join(FILE_NAME);
+        let mut text = std::fs::read_to_string(&path).unwrap();
+        change(&mut text);
+        std::fs::write(&path, &text).unwrap();
+        let earlier = Earlier::read(first.folder.path()).unwrap();
+        let second = sweep_into(first.folder, plan, earlier, Fault::None, usize::MAX, &back);
+        // Nothing is added
+        assert_eq!(std::fs::read_to_string(second.folder.path().join(FILE_NAME)).unwrap(), text);
+        let error = second.outcome.unwrap_err();
+        assert!(matches!(error, Error::Input(_)) && error.exit_code() == 2, "{error}");
+        error.to_string()
+    };
+    let replace = |from: &str, to: &str| {
+        let (from, to) = (from.to_owned(), to.to_owned());
+        move |text: &mut String| {
+            assert!(text.contains(&from), "{from}");
+            *text = text.replacen(&from, &to, 1);
+        }
+    };
+    let plan = Plan::new(&request()).unwrap();
+    let hash = rtbench::bench::environment::program().executable_hash.unwrap();
+    let error = refused(&replace(&hash, "0123"), &plan);
+    assert!(error.contains("another build of the program") && error.contains("begin a new run"), "{error}");
+    let error = refused(&replace("\"device\":{\"name\":\"", "\"device\":{\"name\":\"not "), &plan);
+    assert!(error.contains("it was measured on not "), "{error}");
+    let error = refused(&replace("\"logical_cpus\":", "\"logical_cpus\":1000"), &plan);
+    assert!(error.contains("the machine"), "{error}");
+    let more = Plan::new(&Request { passes: Some(3), ..request() }).unwrap();
+    assert!(refused(&|_| (), &more).contains("not the same"));
 }
 
 #[test]

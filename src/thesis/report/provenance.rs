@@ -53,6 +53,7 @@ fn one(run: &RecordedRun) -> String {
         ("preset", p.plan.preset.clone()),
         ("left out", list(&p.plan.skipped)),
         ("measured", format!("{rows} configurations, {errors} without a result; {} passes", p.plan.passes)),
+        ("taken up again", list(&run.journal.resumed.iter().map(|r| r.started.clone()).collect::<Vec<_>>())),
         ("end", end),
     ];
     let entries: String = entries.iter().map(|(name, value)| entry(name, value)).collect();

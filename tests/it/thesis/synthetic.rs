@@ -40,7 +40,8 @@ impl Builder {
             message: "".into(),
         };
         let (structures, configurations) = (Vec::new(), Vec::new());
-        let journal = Journal { provenance, structures, configurations, end: Some(end), truncated: None };
+        let journal =
+            Journal { provenance, structures, configurations, resumed: vec![], end: Some(end), truncated: None };
         Builder { run: RecordedRun { journal, folder: "nowhere".into() }, noise: 0.0 }
     }
 
