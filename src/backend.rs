@@ -55,7 +55,7 @@ pub struct Pixel {
 /// What output buffers are filled with before a kernel runs: no triangle, no colour (alpha 0).
 pub const POISON: u32 = 0xDEAD_BEEF;
 
-/// What a counting kernel leaves behind for a pixel (20 words).
+/// What a counting kernel leaves behind for a pixel (22 words).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct CountedPixel {
@@ -125,6 +125,16 @@ pub struct FrameTime {
     pub device_ns: Option<u64>,
     /// By the host's clock, from the previous frame's completion (or the start) to this one's, in nanoseconds.
     pub wall_ns: u64,
+}
+
+/// What a timed path left behind.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Timed {
+    /// Of its last frame, rows from the top; empty where no path was timed.
+    pub pixels: Vec<Pixel>,
+    /// Dispatches per frame: one, unless the image was split into tiles, or a watchdog was in the way. 0 where nothing is
+    /// dispatched.
+    pub dispatches: u32,
 }
 
 /// What kind of device it is.
@@ -207,10 +217,14 @@ pub trait Backend {
 /// The identity of a compiled kernel.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct KernelInfo {
-    /// First 16 digits of BLAKE3 of its text: equal for kernels that are equal.
+    /// First 16 digits of BLAKE3 of its text, without what only describes the machine (a software driver's threads): equal
+    /// for kernels that are equal.
     pub hash: String,
     /// Where it reads scene and structure from: `buffers` or `textures`.
     pub fetch: String,
+    /// True if it is compiled with wgpu's bounds checks and loop bounds.
+    #[serde(default)]
+    pub checked: bool,
 }
 
 /// A scene and a structure on a device, with one traversal.
@@ -236,6 +250,10 @@ pub trait Prepared {
         size: Size,
         interrupted: Interrupted,
     ) -> Result<Vec<FrameTime>>;
+
+    /// What the last frame of the last [`Prepared::time_path`] wrote, into a buffer that was filled with [`POISON`] before
+    /// the path: what was timed can so be checked.
+    fn timed(&mut self) -> Result<Timed>;
 
     /// Traces given rays: the nearest hit, or with `any_hit` whether anything is hit at all (`triangle` is 0 then, and
     /// `t` is 0).

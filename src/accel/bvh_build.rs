@@ -4,25 +4,28 @@ use super::bvh::{Bvh, BvhNode, MAX_DEPTH};
 use super::bvh_bins::{Binning, Item, Rows, Splitter};
 use super::bvh_partition::{Partitioner, Sides, centroid_bounds, halve};
 use super::prims::{self, CHUNK, Prim};
-use super::sah::unit;
+use super::sah::{CostModel, half_area, unit};
 use crate::error::Result;
 use crate::math::Aabb;
 use crate::scene::Scene;
 use rayon::prelude::*;
 
 /// What can be set.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
     /// Bins per axis, 2 to 32.
     pub bins: usize,
-    /// A node with at most this many triangles is a leaf, 1 to [`super::bvh::MAX_LEAF`].
+    /// No leaf has more triangles than this, 1 to [`super::bvh::MAX_LEAF`].
     pub max_leaf: usize,
+    /// A node that could be a leaf is split all the same where that is cheaper. An infinite cost of a step makes it a leaf
+    /// always.
+    pub cost: CostModel,
 }
 
 impl Default for Config {
     /// What explains the published node counts best.
     fn default() -> Self {
-        Config { bins: 16, max_leaf: 4 }
+        Config { bins: 16, max_leaf: 4, cost: CostModel { traversal: f64::INFINITY, intersection: 1.0 } }
     }
 }
 
@@ -106,7 +109,7 @@ impl Builder {
 
     /// Builds a subtree on one thread, depth first; returns its root and its depth.
     fn subtree(&self, items: &mut [Item], first: u32, bounds: Rows, depth: u32, desk: &mut Desk) -> (BvhNode, u32) {
-        if items.len() <= self.config.max_leaf {
+        if items.len() <= self.config.max_leaf && !self.is_worth_splitting(items, &bounds, depth, desk) {
             return (BvhNode::leaf(&bounds, first, items.len() as u32), 0);
         }
         let sides = self.divide(items, depth, desk);
@@ -119,23 +122,44 @@ impl Builder {
         (BvhNode::inner(&bounds, pair as u32), 1 + a_depth.max(b_depth))
     }
 
-    /// Reorders `items` into two non-empty sides.
-    fn divide(&self, items: &mut [Item], depth: u32, desk: &mut Desk) -> Sides {
-        // Halving from here on would just keep within the greatest depth: no more adventures.
-        let halvings = usize::BITS - items.len().leading_zeros();
-        if depth + halvings >= MAX_DEPTH {
-            return halve(items);
+    /// True if a node of few triangles costs less, by the surface area heuristic, with two leaves than as one.
+    fn is_worth_splitting(&self, items: &[Item], bounds: &Rows, depth: u32, desk: &mut Desk) -> bool {
+        let CostModel { traversal, intersection } = self.config.cost;
+        if !traversal.is_finite() || items.len() < 2 || is_near_the_bottom(items, depth) {
+            return false;
         }
-        let centroids = centroid_bounds(items);
+        let Some(split) = desk.splitter.find(items, &self.binning(items)) else { return false };
+        let tests = |sides: &Rows, count: usize| half_area(&sides.aabb()) * count as f64;
+        let split_tests = tests(&split.left, split.left_count) + tests(&split.right, items.len() - split.left_count);
+        let whole_tests = tests(bounds, items.len());
+        traversal * half_area(&bounds.aabb()) + intersection * split_tests < intersection * whole_tests
+    }
+
+    /// Bins for the centroids of a node.
+    fn binning(&self, items: &[Item]) -> Binning {
         // Most nodes are small. Half the bins do there (bunny: 0.1 % on the cost), since more would stay empty.
         let Config { bins, .. } = self.config;
         let bins = if items.len() <= 2 * bins { bins.div_ceil(2).max(2) } else { bins };
-        let binning = Binning::new(&centroids, bins);
+        Binning::new(&centroid_bounds(items), bins)
+    }
+
+    /// Reorders `items` into two non-empty sides.
+    fn divide(&self, items: &mut [Item], depth: u32, desk: &mut Desk) -> Sides {
+        if is_near_the_bottom(items, depth) {
+            return halve(items);
+        }
+        let binning = self.binning(items);
         let Some(split) = desk.splitter.find(items, &binning) else { return halve(items) };
         let mid = desk.partitioner.shared(items, |item| binning.of(item)[split.axis] <= split.bin);
         debug_assert_eq!(mid, split.left_count);
         Sides { mid, left: split.left, right: split.right }
     }
+}
+
+/// True if halving from here on would just keep within the greatest depth: no more adventures.
+fn is_near_the_bottom(items: &[Item], depth: u32) -> bool {
+    let halvings = usize::BITS - items.len().leading_zeros();
+    depth + halvings >= MAX_DEPTH
 }
 
 impl Part {

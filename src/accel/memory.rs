@@ -1,7 +1,7 @@
 //! The thesis's memory model (SPEC section 7): what it would have counted for a structure, geometry included.
 //!
 //! It is kept apart from what is really allocated: its BVH has 40 bytes a node where a node has 32, and leaves the
-//! triangle records out. Held against all 27 published sizes by `tests/it/thesis_published.rs`.
+//! triangle records out. Held against all 27 published sizes by `tests/it/thesis/published.rs`.
 
 /// Bytes of a vertex: position and normal, four floats each.
 const VERTEX: u64 = 32;

@@ -1,6 +1,7 @@
 //! What `--structure` can name: every pair of builder and traversal, with its options. One row per variant.
 
 use super::method::{KdSearch, MAX_SHORT_STACK, Vote};
+use super::sah::CostModel;
 use super::selection::Selection;
 use super::{Structure, Traversal, brute, bvh_build, grid_build, kdtree_build, ploc};
 use crate::error::Result;
@@ -11,6 +12,8 @@ use crate::scene::Scene;
 pub struct VariantInfo {
     /// Name on the command line and in every table.
     pub name: &'static str,
+    /// Another name that it is known by; empty if it has none.
+    pub alias: &'static str,
     /// One line for `--help`.
     pub summary: &'static str,
     /// Where it comes from; empty if from nowhere in particular.
@@ -68,6 +71,13 @@ const BVH_OPTIONS: &[OptionInfo] = &[
         meaning: "split until at most so many triangles",
         kind: Kind::Count(1, 15),
     },
+    OptionInfo {
+        key: "kt",
+        default: "inf",
+        meaning: "cost of a traversal step: with it, nodes within max_leaf are split, too, where that is cheaper; inf: never",
+        kind: Kind::Number(0.0, f64::INFINITY),
+    },
+    OptionInfo { key: "ki", default: "1", meaning: "cost of a triangle test", kind: Kind::Number(1e-6, 1e6) },
 ];
 
 const CELLS: Kind = Kind::CountOrAuto(1, 1 << 20);
@@ -185,6 +195,7 @@ pub fn variants() -> &'static [VariantInfo] {
     const VARIANTS: &[VariantInfo] = &[
         VariantInfo {
             name: "grid",
+            alias: "",
             summary: "uniform grid, walked by a 3D-DDA",
             paper: "Fujimoto et al. 1986; Amanatides and Woo 1987",
             build_options: GRID_OPTIONS,
@@ -196,6 +207,7 @@ pub fn variants() -> &'static [VariantInfo] {
         },
         VariantInfo {
             name: "kdtree",
+            alias: "",
             summary: "SAH kd-tree, short stack of four with pushdown and restart",
             paper: "Shevtsov et al. 2007; Wald and Havran 2006; Horn et al. 2007",
             build_options: KD_OPTIONS,
@@ -207,7 +219,8 @@ pub fn variants() -> &'static [VariantInfo] {
         },
         VariantInfo {
             name: "bvh",
-            summary: "binned SAH BVH, packets of 8x8 rays with one shared stack",
+            alias: "bvh-packet",
+            summary: "binned SAH BVH, packets of 8x8 rays with one shared stack (also: bvh-packet)",
             paper: "Günther et al. 2007",
             build_options: BVH_OPTIONS,
             walk_options: &[VOTE, PACKET],
@@ -218,6 +231,7 @@ pub fn variants() -> &'static [VariantInfo] {
         },
         VariantInfo {
             name: "bvh-stack",
+            alias: "",
             summary: "the same BVH, one ray per thread with a stack of its own",
             paper: "Aila and Laine 2009",
             build_options: BVH_OPTIONS,
@@ -229,6 +243,7 @@ pub fn variants() -> &'static [VariantInfo] {
         },
         VariantInfo {
             name: "ploc-stack",
+            alias: "",
             summary: "BVH built by obvhs (PLOC with reinsertion), one ray per thread with a stack of its own",
             paper: "Meister and Bittner 2018",
             build_options: &[OptionInfo {
@@ -245,6 +260,7 @@ pub fn variants() -> &'static [VariantInfo] {
         },
         VariantInfo {
             name: "grid-coop",
+            alias: "",
             summary: "the same grid; the 64 threads of a group share out all triangle tests of the group",
             paper: "",
             build_options: GRID_OPTIONS,
@@ -256,6 +272,7 @@ pub fn variants() -> &'static [VariantInfo] {
         },
         VariantInfo {
             name: "grid-packet",
+            alias: "",
             summary: "the same grid; packets march through it slice by slice along their main axis",
             paper: "Wald et al. 2006",
             build_options: GRID_OPTIONS,
@@ -267,6 +284,7 @@ pub fn variants() -> &'static [VariantInfo] {
         },
         VariantInfo {
             name: "brute",
+            alias: "",
             summary: "no structure: every ray against every triangle (ground truth for small scenes)",
             paper: "",
             build_options: &[],
@@ -286,18 +304,22 @@ fn build_grid(s: &Selection, scene: &Scene) -> Result<Structure> {
     grid_build::build(scene, &config).map(Structure::Grid)
 }
 
+fn cost(s: &Selection) -> CostModel {
+    CostModel { traversal: s.number("kt"), intersection: s.number("ki") }
+}
+
 fn build_kdtree(s: &Selection, scene: &Scene) -> Result<Structure> {
     let config = kdtree_build::Config {
         bins: s.size("bins"),
         exact_below: s.size("exact_below"),
-        cost: super::sah::CostModel { traversal: s.number("kt"), intersection: s.number("ki") },
+        cost: cost(s),
         max_depth: s.count("max_depth"),
     };
     kdtree_build::build(scene, &config).map(Structure::KdTree)
 }
 
 fn build_bvh(s: &Selection, scene: &Scene) -> Result<Structure> {
-    let config = bvh_build::Config { bins: s.size("bins"), max_leaf: s.size("max_leaf") };
+    let config = bvh_build::Config { bins: s.size("bins"), max_leaf: s.size("max_leaf"), cost: cost(s) };
     bvh_build::build(scene, &config).map(Structure::Bvh)
 }
 

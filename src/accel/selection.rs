@@ -33,13 +33,15 @@ impl Selection {
     pub fn parse(text: &str) -> Result<Selection> {
         let place = || format!("--structure {text}");
         let (name, options) = text.split_once(':').unwrap_or((text, ""));
-        let Some(variant) = variants().iter().position(|v| v.name == name) else {
+        let Some(variant) = variants().iter().position(|v| v.name == name || (v.alias == name && !name.is_empty()))
+        else {
             let names: Vec<&str> = variants().iter().map(|v| v.name).collect();
             let problem = format!("there is no structure '{name}'");
             return Err(Error::argument(place(), problem, format!("one of {}", names.join(", "))));
         };
         let table: Vec<&OptionInfo> = variants()[variant].options().collect();
         let mut values: Vec<String> = table.iter().map(|o| o.default.to_owned()).collect();
+        let mut set = vec![false; table.len()];
         for option in options.split(',').filter(|o| !o.is_empty()) {
             let (key, value) = option.split_once('=').unwrap_or((option, ""));
             let Some(index) = table.iter().position(|o| o.key == key) else {
@@ -47,6 +49,10 @@ impl Selection {
                 let mend = format!("one of {}", keys.join(", "));
                 return Err(Error::argument(place(), format!("{name} has no option '{key}'"), mend));
             };
+            let given = &mut set[index];
+            if std::mem::replace(given, true) {
+                return Err(Error::argument(place(), format!("{key} is given twice"), "give it once"));
+            }
             values[index] = table[index]
                 .kind
                 .parse(value)

@@ -6,7 +6,7 @@ use super::sweep::Event;
 use super::verify::{Verdict, Verifier};
 use crate::accel::method::Rays;
 use crate::accel::{Built, Selection};
-use crate::backend::{Config, Interrupted, Prepared, Size};
+use crate::backend::{Config, Interrupted, Pixel, Prepared, Size};
 use crate::error::{Error, Result};
 use crate::results::record::{
     ConfigurationRecord, Failure, Memory, SceneRecord, Status, StructureRecord, Verification,
@@ -218,6 +218,18 @@ pub fn measure(
     let samples = measure::time(prepared, config, views, size, passes, warmup_frames, interrupted, &mut || {
         watch(Event::Work(work));
     })?;
+    // What has been timed is not what has been verified (whole frames, in flight): its last picture must be the same.
+    let timed = prepared.timed()?;
+    record.dispatches = (timed.dispatches > 0).then_some(timed.dispatches);
+    if let Some(view) = views.last()
+        && let differing = differing_pixels(&timed.pixels, &prepared.image(config, view, size)?)
+        && differing > 0
+    {
+        let message = format!("the last timed frame has {differing} pixels that are not those of the verified kernel");
+        fail(&mut record, Failure::Verification, message);
+        record.verified = false;
+        return Ok(record);
+    }
     let (source, warnings) = measure::choose_source(&samples);
     record.timing_source = Some(source);
     record.warnings.extend(warnings);
@@ -286,6 +298,15 @@ fn compare_structures(
     let (first, hash) = subject.images.entry(key).or_insert(own);
     record.reference_image_hash = Some(hash.clone());
     (context.exact && *hash != image.image_hash).then(|| format!("the image differs from that of {first}"))
+}
+
+/// Pixels in which two images by one kernel differ; all of them if one image is incomplete. One kernel gives the same bits
+/// each time, on every device.
+fn differing_pixels(a: &[Pixel], b: &[Pixel]) -> usize {
+    if a.len() != b.len() {
+        return a.len().max(b.len());
+    }
+    a.iter().zip(b).filter(|(a, b)| a != b).count()
 }
 
 /// The counting kernel must make the timed kernel's picture.

@@ -53,6 +53,10 @@ pub struct Plan {
     pub passes: usize,
     /// Untimed frames before the first pass.
     pub warmup_frames: usize,
+    /// Threads that build, where the command line does not say; 0 for all.
+    pub build_threads: usize,
+    /// How often each structure is built; the median counts.
+    pub builds: usize,
     /// Folder with the files of the catalogue's scenes.
     pub scenes_folder: Option<PathBuf>,
     /// What the preset names and this machine does not have, in words.
@@ -161,6 +165,8 @@ impl Plan {
             camera_path: request.camera_path.clone(),
             passes,
             warmup_frames,
+            build_threads: preset.build_threads,
+            builds: preset.builds.clamp(1, MAX_REPEATS),
             scenes_folder: request.scenes_folder.clone(),
             skipped,
             preset: preset.name,
@@ -274,6 +280,7 @@ impl Plan {
             configurations: self.configurations(),
             passes: self.passes,
             warmup_frames: self.warmup_frames,
+            builds: self.builds,
             skipped: self.skipped.clone(),
         }
     }

@@ -30,8 +30,18 @@ pub struct Preset {
     pub passes: usize,
     /// Untimed frames before the first pass.
     pub warmup_frames: usize,
+    /// Threads that build, where the command line does not say; 0 for all.
+    #[serde(default)]
+    pub build_threads: usize,
+    /// How often each structure is built; the median counts.
+    #[serde(default = "once")]
+    pub builds: usize,
     /// Scenes.
     pub scene: Vec<PresetScene>,
+}
+
+fn once() -> usize {
+    1
 }
 
 /// A scene of a preset; whatever it sets of its own goes before what the preset says. A scene may stand there several

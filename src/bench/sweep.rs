@@ -14,6 +14,7 @@ use crate::results::journal::{self, Journal, JournalWriter};
 use crate::results::record::{
     ConfigurationRecord, End, Failure, Memory, Provenance, Record, Resumed, SCHEMA, Status, StructureRecord,
 };
+use crate::results::statistics;
 use crate::results::summary::Run;
 use crate::scene::Scene;
 use std::collections::{HashMap, VecDeque};
@@ -50,7 +51,7 @@ pub struct Job<'a> {
     pub out: &'a std::path::Path,
     /// What is there of it already.
     pub earlier: Earlier,
-    /// Threads for building, 0 for all.
+    /// Threads for building, 0 for as many as the plan says.
     pub threads: usize,
     /// Command line.
     pub arguments: Vec<String>,
@@ -102,7 +103,7 @@ pub fn run(job: Job) -> Result<Outcome> {
     let (plan, out) = (job.plan, job.out);
     let mut sweep = Sweep {
         context: Context { plan, out, exact, interrupted: job.interrupted, watch: job.watch },
-        threads: job.threads,
+        threads: if job.threads > 0 { job.threads } else { plan.build_threads },
         device_name: job.device.backend.info().name.clone(),
         device: Some(job.device),
         open: job.open,
@@ -170,7 +171,7 @@ impl Sweep<'_, '_> {
         self.earlier.check_scene(&record, paths.iter().map(|(_, _, path)| path))?;
         // The reference is traced through this tree, and confirmed by brute force (see `verify`).
         let reference_selection = Selection::parse("bvh")?;
-        let reference = reference_selection.build(&scene, self.threads)?;
+        let reference = self.build(&reference_selection, &scene)?;
         let mut subject = Subject {
             scene: &scene,
             record,
@@ -196,7 +197,7 @@ impl Sweep<'_, '_> {
                 continue;
             }
             self.say(Event::Doing(format!("building {} of {}", first.name(), scene.name)));
-            match first.build(&scene, self.threads) {
+            match self.build(first, &scene) {
                 Ok(built) => self.structures(&mut subject, same, &built)?,
                 // What cannot be built for this scene is no reason to leave the others unmeasured.
                 Err(Error::Device(message)) => {
@@ -211,6 +212,21 @@ impl Sweep<'_, '_> {
         }
         // Last: what is measured matters more where the disk is about to be full
         self.pictures(&subject, &reference)
+    }
+
+    /// Build a structure as often as the plan says; the time is the median.
+    fn build(&self, selection: &Selection, scene: &Scene) -> Result<Built> {
+        let mut built = selection.build(scene, self.threads)?;
+        let mut times = vec![built.build_ms];
+        for _ in 1..self.context.plan.builds {
+            self.context.check_interrupt()?;
+            // Never two of them at a time in memory
+            drop(built);
+            built = selection.build(scene, self.threads)?;
+            times.push(built.build_ms);
+        }
+        built.build_ms = statistics::median(&times).unwrap_or(built.build_ms);
+        Ok(built)
     }
 
     /// The rows of a structure on a scene that no earlier session settled. The images of those that one did stay, to

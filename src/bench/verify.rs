@@ -79,12 +79,19 @@ struct Answers {
 }
 
 impl Answers {
-    fn counted(prepared: &mut dyn Prepared, config: Config, view: &View, size: Size) -> Result<Answers> {
+    /// By the counting kernel; its counters only where something is compared with them, since they are large.
+    fn counted(
+        prepared: &mut dyn Prepared,
+        (config, view, size): (Config, &View, Size),
+        with_counters: bool,
+    ) -> Result<Answers> {
         let mut answers = Answers { pixels: Vec::new(), distances: Vec::new(), counters: Vec::new() };
         prepared.counted(config, view, size, &mut |_, band: &[CountedPixel]| {
             answers.pixels.extend(band.iter().map(|p| p.pixel));
             answers.distances.extend(band.iter().map(|p| f32::from_bits(p.t)));
-            answers.counters.extend(band.iter().map(|p| p.counters));
+            if with_counters {
+                answers.counters.extend(band.iter().map(|p| p.counters));
+            }
         })?;
         Ok(answers)
     }
@@ -146,13 +153,13 @@ impl<'a> Verifier<'a> {
     ) -> Result<Verdict> {
         let timed = prepared.image(config, view, size)?;
         let found = match twin {
-            Some(_) => Answers::counted(prepared, config, view, size)?,
+            Some(_) => Answers::counted(prepared, (config, view, size), true)?,
             None => Answers { pixels: timed.clone(), distances: Vec::new(), counters: Vec::new() },
         };
         let own = match twin {
             Some(structure) => {
                 let mut twin = self.cpu.prepare(self.scene, structure, method)?;
-                Some(Answers::counted(twin.as_mut(), config, view, size)?)
+                Some(Answers::counted(twin.as_mut(), (config, view, size), true)?)
             }
             None => None,
         };
@@ -170,8 +177,7 @@ impl<'a> Verifier<'a> {
             None => {
                 let own = Method { traversal: Traversal::BvhStack, tiles: 1, ..method };
                 let mut twin = self.cpu.prepare(self.scene, self.tree, own)?;
-                let mut answers = Answers::counted(twin.as_mut(), config, view, size)?;
-                answers.counters = Vec::new();
+                let answers = Answers::counted(twin.as_mut(), (config, view, size), false)?;
                 let (brute_checked, brute_differing) = self.check_by_brute_force(&answers, own, config, view, size)?;
                 let view = view.clone();
                 self.references.push(Reference { rays, config, view, size, answers, brute_checked, brute_differing });
@@ -203,7 +209,7 @@ impl<'a> Verifier<'a> {
         if let Some(known) = known {
             return Ok((known.brute_checked, known.brute_differing));
         }
-        let rays = (BRUTE_TESTS / self.scene.triangles.len().max(1)).clamp(64, size.pixels().max(1)).min(size.pixels());
+        let rays = (BRUTE_TESTS / self.scene.triangles.len().max(1)).max(64).min(size.pixels());
         let chosen: Vec<usize> = (0..rays).map(|i| (i as u64 * size.pixels() as u64 / rays as u64) as usize).collect();
         let given: Vec<GivenRay> = chosen.iter().map(|&pixel| render::primary_ray(method, view, size, pixel)).collect();
         let hits = self.cpu.prepare(self.scene, &self.brute, Traversal::Brute.into())?.trace(&given, false)?;

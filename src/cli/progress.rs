@@ -81,8 +81,9 @@ impl Progress {
             self.pace = Some(self.pace.map_or(newest, |pace| 0.5 * (pace + newest)));
         }
         self.last = (self.done, Instant::now());
+        let variant = if record.variant == "default" { String::new() } else { format!(":{}", record.variant) };
         let what = format!(
-            "{} {} {:?} {}x{}",
+            "{} {}{variant} {:?} {}x{}",
             record.scene.name, record.structure, record.config, record.width, record.height
         );
         if record.status == Status::Error {

@@ -25,7 +25,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
-    /// What the flags below begin with: quick, thesis, or a TOML file like presets/quick.toml
+    /// What the flags below begin with: quick, thesis, thesis-lite, or a TOML file like presets/quick.toml
     #[arg(long, default_value = "quick", value_name = "NAME|FILE")]
     preset: String,
     /// Scene file, or name of a scene with options; may be repeated

@@ -225,7 +225,8 @@ impl<T: Traverse> Prepared for CpuPrepared<'_, T> {
         interrupted: Interrupted,
     ) -> Result<Vec<FrameTime>> {
         let mut pixels = std::mem::take(&mut self.timed);
-        pixels.resize(size.pixels(), Pixel::zeroed());
+        pixels.clear();
+        pixels.resize(size.pixels(), Pixel { triangle: POISON, rgba: POISON });
         let mut times = Vec::with_capacity(views.len());
         let mut last = Instant::now();
         for view in views {
@@ -239,6 +240,10 @@ impl<T: Traverse> Prepared for CpuPrepared<'_, T> {
         }
         self.timed = pixels;
         Ok(times)
+    }
+
+    fn timed(&mut self) -> Result<Timed> {
+        Ok(Timed { pixels: self.timed.clone(), dispatches: 0 })
     }
 
     fn trace(&mut self, rays: &[GivenRay], any_hit: bool) -> Result<Vec<Hit>> {

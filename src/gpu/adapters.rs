@@ -10,7 +10,7 @@ pub enum Selector {
     /// software rasteriser.
     #[default]
     Best,
-    /// By its place in [`adapters`], from 0.
+    /// By its place in [`adapters`], from 0; a number beyond that is a part of its name.
     Index(usize),
     /// By a part of its name, in any case.
     Name(String),
@@ -81,7 +81,8 @@ pub(super) fn describe(adapter: &wgpu::Adapter) -> DeviceInfo {
 /// Threads of lavapipe: LP_NUM_THREADS, or one per processor.
 fn software_threads() -> usize {
     let asked = std::env::var("LP_NUM_THREADS").ok().and_then(|text| text.parse().ok());
-    asked.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from))
+    // 0 makes it compute on the thread that submits
+    asked.map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), |threads: usize| threads.max(1))
 }
 
 /// Index of the adapter to take.
@@ -97,13 +98,15 @@ pub fn choose(adapters: &[DeviceInfo], selector: &Selector) -> Result<usize> {
         DeviceType::SoftwareRasteriser => 4,
         DeviceType::CpuTwin => 5,
     };
+    let named = |part: &str| {
+        let part = part.to_lowercase();
+        adapters.iter().position(|info| info.name.to_lowercase().contains(&part))
+    };
     let found = match selector {
         Selector::Best => (0..adapters.len()).min_by_key(|&index| rank(&adapters[index])),
-        Selector::Index(index) => (*index < adapters.len()).then_some(*index),
-        Selector::Name(part) => {
-            let part = part.to_lowercase();
-            adapters.iter().position(|info| info.name.to_lowercase().contains(&part))
-        }
+        Selector::Index(index) if *index < adapters.len() => Some(*index),
+        Selector::Index(number) => named(&number.to_string()),
+        Selector::Name(part) => named(part),
     };
     found.ok_or_else(|| {
         let list: Vec<_> = adapters.iter().enumerate().map(|(i, info)| format!("{i}: {}", info.name)).collect();

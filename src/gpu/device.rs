@@ -127,6 +127,8 @@ impl GpuBackend {
             let seconds = self.options.timeout.as_secs();
             let problem = format!("a kernel did not finish within {seconds} s: {error}");
             lock(&self.trouble).lost.get_or_insert(problem.clone());
+            // The last handle to a device waits, for however long, until the device is idle: let it never be dropped
+            std::mem::forget((self.device.clone(), self.queue.clone()));
             return Err(Error::DeviceLost(problem));
         }
         self.check()
@@ -148,7 +150,7 @@ impl GpuBackend {
         };
         // SAFETY: the kernels are ours, not a user's. They index only buffers whose contents this crate has built and
         // validated, their loops end (every structure is finite, and each step moves on along the ray), and they
-        // divide no integers. `--checked` runs the same kernels with the checks on.
+        // divide integers by constants alone. `--checked` runs the same kernels with the checks on.
         #[allow(unsafe_code)]
         let module = unsafe { self.device.create_shader_module_trusted(descriptor, checks) };
         let bindings = self.bindings(kernel);

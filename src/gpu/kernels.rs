@@ -77,6 +77,9 @@ pub fn stack_size(depth: u32) -> u32 {
     (depth + 2).next_multiple_of(32)
 }
 
+/// Begin of the line that says over how many threads a software driver deals the work-groups.
+const THREADS: &str = "const THREADS";
+
 /// An assembled kernel.
 #[derive(Clone, Debug)]
 pub struct Source {
@@ -95,9 +98,14 @@ impl Source {
         }
     }
 
-    /// BLAKE3 of the text: the identity of a measured kernel.
+    /// BLAKE3 of the text without the number of the driver's threads: the identity of a measured kernel, the same on every
+    /// machine.
     pub fn hash(&self) -> String {
-        blake3::hash(self.text.as_bytes()).to_hex()[..16].to_string()
+        let mut hasher = blake3::Hasher::new();
+        for line in self.text.split_inclusive('\n').filter(|line| !line.starts_with(THREADS)) {
+            hasher.update(line.as_bytes());
+        }
+        hasher.finalize().to_hex()[..16].to_string()
     }
 }
 
@@ -169,10 +177,10 @@ impl Kernel {
         word("GROUP_HEIGHT", self.method.group.height);
         word("GROUP_SIZE", self.method.group.size());
         word("TEXTURE_WIDTH", TEXTURE_WIDTH);
-        word("THREADS", self.software_threads.max(1));
         if let Traversal::KdTree(search) = self.method.traversal {
             word("SHORT_STACK", search.stack);
         }
+        writeln!(text, "{THREADS}: u32 = {}u;", self.software_threads.max(1)).unwrap();
         let mut flag = |name: &str, value: bool| writeln!(text, "const {name}: bool = {value};").unwrap();
         flag("SOFTWARE", self.software_threads > 0);
         match self.method.traversal {

@@ -5,6 +5,7 @@ mod device;
 pub mod kernels;
 mod prepared;
 mod shared;
+mod timing;
 mod upload;
 mod words;
 

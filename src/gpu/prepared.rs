@@ -1,8 +1,9 @@
-//! A scene and a structure on a device: rendering, counting, timing, tracing.
+//! A scene and a structure on a device: rendering, counting, tracing; timing is in [`super::timing`].
 
 use super::device::{Compiled, GpuBackend};
 use super::kernels::{Entry, Kernel, stack_size};
 use super::shared::{FrameUniform, TraceRay};
+use super::timing::Written;
 use super::upload::Uploaded;
 use crate::accel::{Method, Structure, Traversal};
 use crate::backend::*;
@@ -11,8 +12,7 @@ use crate::error::{Error, Result};
 use crate::math::{Hit, T_MAX};
 use crate::scene::{Light, Scene};
 use bytemuck::{AnyBitPattern, NoUninit, Zeroable};
-use std::collections::{HashMap, VecDeque};
-use std::time::{Duration, Instant};
+use std::collections::HashMap;
 
 /// Bands of frames that are rendered or counted, not timed: about this many pixels.
 const BAND_PIXELS: u32 = 262_144;
@@ -20,31 +20,30 @@ const BAND_PIXELS: u32 = 262_144;
 /// Rays per dispatch of [`Prepared::trace`].
 const TRACE_RAYS: usize = 1 << 20;
 
-/// Submissions in flight while timing: the next one is there before the last one is done.
-const IN_FLIGHT: usize = 2;
-
 pub(super) struct GpuPrepared<'a> {
-    backend: &'a GpuBackend,
+    pub(super) backend: &'a GpuBackend,
     scene: &'a Scene,
     uploaded: Uploaded,
-    method: Method,
+    pub(super) method: Method,
     stack_size: u32,
     epsilon: f32,
     /// Bands per frame that keep a dispatch below the watchdog, by configuration and size.
-    bands: HashMap<(Config, Size), u32>,
+    pub(super) bands: HashMap<(Config, Size), u32>,
+    /// Of the path that was timed last.
+    pub(super) written: Option<Written>,
 }
 
 /// Uniforms and lights of many frames, uploaded before any of them runs.
-struct Frames {
+pub(super) struct Frames {
     uniforms: wgpu::Buffer,
     lights: wgpu::Buffer,
     stride: u32,
     /// Work-groups of each uniform's part, columns and rows: what is dispatched.
-    groups: Vec<(u32, u32)>,
+    pub(super) groups: Vec<(u32, u32)>,
 }
 
 /// A part of an image, and the pixel of the output where it would begin if it had all columns.
-type Part = (Tile, u32);
+pub(super) type Part = (Tile, u32);
 
 impl<'a> GpuPrepared<'a> {
     pub fn new(
@@ -68,17 +67,18 @@ impl<'a> GpuPrepared<'a> {
             stack_size: stack_size(depth),
             epsilon: surface_epsilon(scene.bounds()),
             bands: HashMap::new(),
+            written: None,
         })
     }
 
-    fn kernel_of(&self, entry: Entry) -> Kernel {
+    pub(super) fn kernel_of(&self, entry: Entry) -> Kernel {
         let software_threads = self.backend.software_threads();
         let textures = self.uploaded.textures;
         Kernel { entry, method: self.method, stack_size: self.stack_size, software_threads, textures }
     }
 
     /// Uploads the uniforms of all parts of all views.
-    fn frames(&self, views: &[View], size: Size, parts: &[Part]) -> Result<Frames> {
+    pub(super) fn frames(&self, views: &[View], size: Size, parts: &[Part]) -> Result<Frames> {
         let stride = (size_of::<FrameUniform>() as u32)
             .next_multiple_of(self.backend.limits.min_uniform_buffer_offset_alignment);
         let mut uniforms = Vec::with_capacity(views.len() * parts.len() * stride as usize);
@@ -123,7 +123,12 @@ impl<'a> GpuPrepared<'a> {
         Ok(Frames { uniforms, lights: self.backend.storage("the lights", &lights)?, stride, groups })
     }
 
-    fn render_bindings(&self, compiled: &Compiled, frames: &Frames, output: &wgpu::Buffer) -> wgpu::BindGroup {
+    pub(super) fn render_bindings(
+        &self,
+        compiled: &Compiled,
+        frames: &Frames,
+        output: &wgpu::Buffer,
+    ) -> wgpu::BindGroup {
         let uniform = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
             buffer: &frames.uniforms,
             offset: 0,
@@ -154,25 +159,19 @@ impl<'a> GpuPrepared<'a> {
         self.backend.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
     }
 
-    /// Submits one band.
-    fn submit(
+    /// Submits one part.
+    pub(super) fn submit(
         &self,
         compiled: &Compiled,
         bindings: &wgpu::BindGroup,
         frames: &Frames,
         index: usize,
-        timer: Option<(&wgpu::QuerySet, u32)>,
+        timer: Option<wgpu::ComputePassTimestampWrites>,
     ) -> wgpu::SubmissionIndex {
         let mut encoder = self.backend.device.create_command_encoder(&Default::default());
         {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                label: None,
-                timestamp_writes: timer.map(|(query_set, first)| wgpu::ComputePassTimestampWrites {
-                    query_set,
-                    beginning_of_pass_write_index: Some(first),
-                    end_of_pass_write_index: Some(first + 1),
-                }),
-            });
+            let mut pass =
+                encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes: timer });
             pass.set_pipeline(&compiled.pipeline);
             pass.set_bind_group(0, bindings, &[index as u32 * frames.stride]);
             let (x, y) = frames.groups[index];
@@ -182,7 +181,7 @@ impl<'a> GpuPrepared<'a> {
     }
 
     /// Copies a buffer's first `count` elements back.
-    fn read<T: AnyBitPattern + NoUninit>(&self, buffer: &wgpu::Buffer, count: usize) -> Result<Vec<T>> {
+    pub(super) fn read<T: AnyBitPattern + NoUninit>(&self, buffer: &wgpu::Buffer, count: usize) -> Result<Vec<T>> {
         let size = (count * size_of::<T>()) as u64;
         let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
         let staging = self.backend.buffer("the read-back", size, usage)?;
@@ -197,7 +196,7 @@ impl<'a> GpuPrepared<'a> {
     }
 
     /// A buffer for output, filled with [`POISON`]: what a kernel does not write is then seen.
-    fn poisoned(&self, what: &str, size: u64) -> Result<wgpu::Buffer> {
+    pub(super) fn poisoned(&self, what: &str, size: u64) -> Result<wgpu::Buffer> {
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
         let buffer = self.backend.buffer(what, size, usage)?;
         let poison = vec![POISON; (size as usize).div_ceil(4)];
@@ -206,42 +205,8 @@ impl<'a> GpuPrepared<'a> {
     }
 
     /// Splits an image into about `across` x `down` parts of whole work-groups, each with its own place in the output.
-    fn parts(&self, size: Size, across: u32, down: u32) -> Vec<Part> {
+    pub(super) fn parts(&self, size: Size, across: u32, down: u32) -> Vec<Part> {
         tiles(size, across, down, self.method.group).into_iter().map(|tile| (tile, tile.row * size.width)).collect()
-    }
-
-    /// Parts of a frame for timing: the method's tiles, more of them where a watchdog asks for it.
-    fn timing_parts(&mut self, config: Config, view: &View, size: Size) -> Result<Vec<Part>> {
-        let bands = self.timing_bands(config, view, size)?;
-        let tiles = self.method.tiles;
-        Ok(self.parts(size, tiles, tiles.max(bands.div_ceil(tiles))))
-    }
-
-    /// Bands per frame for timing: one, unless the frame would keep the device busy for longer than a watchdog likes.
-    fn timing_bands(&mut self, config: Config, view: &View, size: Size) -> Result<u32> {
-        if self.backend.software_threads() > 0 {
-            return Ok(1);
-        }
-        if let Some(&bands) = self.bands.get(&(config, size)) {
-            return Ok(bands);
-        }
-        let compiled = self.backend.compiled(self.kernel_of(Entry::Render { config, counting: false }))?;
-        let output = self.poisoned("the image", (size.pixels() * size_of::<Pixel>()) as u64)?;
-        let narrow = self.parts(size, 1, size.height.div_ceil(64));
-        let frames = self.frames(std::slice::from_ref(view), size, &narrow)?;
-        let bindings = self.render_bindings(&compiled, &frames, &output);
-        let mut slowest = Duration::ZERO;
-        for index in 0..narrow.len() {
-            let start = Instant::now();
-            let submission = self.submit(&compiled, &bindings, &frames, index, None);
-            self.backend.wait(submission)?;
-            slowest = slowest.max(start.elapsed());
-        }
-        // As if all bands were as slow as the slowest
-        let whole = slowest * narrow.len() as u32;
-        let bands = whole.as_nanos().div_ceil(self.backend.options.max_dispatch.as_nanos().max(1)).max(1) as u32;
-        self.bands.insert((config, size), bands);
-        Ok(bands)
     }
 }
 
@@ -272,10 +237,18 @@ impl Prepared for GpuPrepared<'_> {
         // Each begins at the output's start
         bands.iter_mut().for_each(|(_, first_pixel)| *first_pixel = 0);
         let largest = bands.iter().map(|(tile, _)| tile.rows as usize * size.width as usize).max().unwrap_or(0);
-        let output = self.poisoned("the counters", (largest * size_of::<CountedPixel>()) as u64)?;
+        let bytes = (largest * size_of::<CountedPixel>()) as u64;
+        let output = self.poisoned("the counters", bytes)?;
+        // For the bands after the first, or they would find the one before
+        let poison = if bands.len() > 1 { Some(self.poisoned("the poison", bytes)?) } else { None };
         let frames = self.frames(std::slice::from_ref(view), size, &bands)?;
         let bindings = self.render_bindings(&compiled, &frames, &output);
         for (index, &(Tile { row, rows, .. }, _)) in bands.iter().enumerate() {
+            if let Some(poison) = poison.as_ref().filter(|_| index > 0) {
+                let mut encoder = self.backend.device.create_command_encoder(&Default::default());
+                encoder.copy_buffer_to_buffer(poison, 0, &output, 0, bytes);
+                self.backend.queue.submit([encoder.finish()]);
+            }
             self.submit(&compiled, &bindings, &frames, index, None);
             let pixels: Vec<CountedPixel> = self.read(&output, (rows * size.width) as usize)?;
             band(row, &pixels);
@@ -290,67 +263,11 @@ impl Prepared for GpuPrepared<'_> {
         size: Size,
         interrupted: Interrupted,
     ) -> Result<Vec<FrameTime>> {
-        let Some(first_view) = views.first() else {
-            return Ok(Vec::new());
-        };
-        let backend = self.backend;
-        let bands = self.timing_parts(config, first_view, size)?;
-        let compiled = backend.compiled(self.kernel_of(Entry::Render { config, counting: false }))?;
-        let output = self.poisoned("the image", (size.pixels() * size_of::<Pixel>()) as u64)?;
-        let timestamps = backend.info().timestamp_period_ns;
-        // As many frames at a time as a query set has room for
-        let chunk = (wgpu::QUERY_SET_MAX_QUERIES as usize / (2 * bands.len())).max(1);
-        let mut times = Vec::with_capacity(views.len());
-        for views in views.chunks(chunk) {
-            let frames = self.frames(views, size, &bands)?;
-            let bindings = self.render_bindings(&compiled, &frames, &output);
-            let count = (frames.groups.len() * 2) as u32;
-            let queries = timestamps.map(|_| {
-                backend.device.create_query_set(&wgpu::QuerySetDescriptor {
-                    label: None,
-                    ty: wgpu::QueryType::Timestamp,
-                    count,
-                })
-            });
-            let mut walls = Vec::with_capacity(frames.groups.len());
-            let mut in_flight = VecDeque::with_capacity(IN_FLIGHT);
-            let mut last = Instant::now();
-            let mut done = |in_flight: &mut VecDeque<_>, most: usize| -> Result<()> {
-                while in_flight.len() > most {
-                    if let Some(submission) = in_flight.pop_front() {
-                        backend.wait(submission)?;
-                        let now = Instant::now();
-                        walls.push((now - last).as_nanos() as u64);
-                        last = now;
-                    }
-                }
-                Ok(())
-            };
-            for index in 0..frames.groups.len() {
-                if interrupted() {
-                    done(&mut in_flight, 0)?;
-                    return Err(Error::Interrupted);
-                }
-                let timer = queries.as_ref().map(|set| (set, index as u32 * 2));
-                in_flight.push_back(self.submit(&compiled, &bindings, &frames, index, timer));
-                done(&mut in_flight, IN_FLIGHT - 1)?;
-            }
-            done(&mut in_flight, 0)?;
-            let ticks = match &queries {
-                Some(set) => self.resolve(set, count)?,
-                None => Vec::new(),
-            };
-            for (frame, walls) in walls.chunks(bands.len()).enumerate() {
-                let device_ns = timestamps.and_then(|period| {
-                    let pairs = ticks[frame * bands.len() * 2..][..bands.len() * 2].chunks_exact(2);
-                    // A clock that runs backwards is broken; the record falls back to wall time
-                    let spans: Option<Vec<u64>> = pairs.map(|pair| pair[1].checked_sub(pair[0])).collect();
-                    spans.map(|spans| (spans.iter().sum::<u64>() as f64 * f64::from(period)) as u64)
-                });
-                times.push(FrameTime { device_ns, wall_ns: walls.iter().sum() });
-            }
-        }
-        Ok(times)
+        self.time(config, views, size, interrupted)
+    }
+
+    fn timed(&mut self) -> Result<Timed> {
+        self.last_timed()
     }
 
     fn trace(&mut self, rays: &[GivenRay], any_hit: bool) -> Result<Vec<Hit>> {
@@ -385,22 +302,12 @@ impl Prepared for GpuPrepared<'_> {
         let kernel = self.kernel_of(Entry::Render { config, counting: false });
         let hash = kernel.assemble().map_err(Error::Device)?.hash();
         let fetch = if kernel.textures { "textures" } else { "buffers" };
-        Ok(Some(KernelInfo { hash, fetch: fetch.to_owned() }))
+        let checked = self.backend.options.checked || self.method.checked;
+        Ok(Some(KernelInfo { hash, fetch: fetch.to_owned(), checked }))
     }
 
     fn allocated(&self) -> (u64, u64) {
         let lights = std::mem::size_of_val(self.scene.lights.as_slice()) as u64;
         (self.uploaded.geometry_bytes + lights, self.uploaded.structure_bytes)
-    }
-}
-
-impl GpuPrepared<'_> {
-    fn resolve(&self, set: &wgpu::QuerySet, count: u32) -> Result<Vec<u64>> {
-        let usage = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
-        let resolved = self.backend.buffer("the timestamps", u64::from(count) * 8, usage)?;
-        let mut encoder = self.backend.device.create_command_encoder(&Default::default());
-        encoder.resolve_query_set(set, 0..count, &resolved, 0);
-        self.backend.queue.submit([encoder.finish()]);
-        self.read(&resolved, count as usize)
     }
 }

@@ -120,6 +120,9 @@ pub struct PlanRecord {
     pub passes: usize,
     /// Untimed frames before the first pass.
     pub warmup_frames: usize,
+    /// How often each structure is built; its time is the median. 0 in records from before there was a choice: once.
+    #[serde(default)]
+    pub builds: usize,
     /// What the preset names and this machine does not have.
     pub skipped: Vec<String>,
 }
@@ -345,6 +348,9 @@ pub struct ConfigurationRecord {
     /// The timed kernel, on a device.
     #[serde(default)]
     pub kernel: Option<KernelInfo>,
+    /// Dispatches per timed frame, on a device: more than one where the image was split into tiles or a watchdog was near.
+    #[serde(default)]
+    pub dispatches: Option<u32>,
     /// By ray type (primary, shadow, reflected), over all frames.
     pub counters: Option<[CounterSums; 3]>,
     /// Sizes.
@@ -386,6 +392,7 @@ impl ConfigurationRecord {
             image_hash: None,
             reference_image_hash: None,
             kernel: None,
+            dispatches: None,
             counters: None,
             memory: Memory::default(),
             build_ms: 0.0,

@@ -77,6 +77,7 @@ pub struct Row {
     pub reflected_leaves_per_ray: Option<f64>,
     pub reflected_pops_per_ray: Option<f64>,
     pub warnings: String,
+    pub dispatches: Option<u32>,
 }
 
 /// One row of `structures.csv`; empty where a column has no meaning.
@@ -209,7 +210,7 @@ impl Row {
             camera_path: record.camera_path.name.clone(),
             fetch: record.kernel.as_ref().map(|kernel| kernel.fetch.clone()),
             kernel_hash: record.kernel.as_ref().map(|kernel| kernel.hash.clone()),
-            shader_checks: device.checked,
+            shader_checks: device.checked || record.kernel.as_ref().is_some_and(|kernel| kernel.checked),
             build_threads: record.build_threads,
             primary_inner_per_ray: per_ray(0, inner),
             primary_leaves_per_ray: per_ray(0, leaves),
@@ -221,6 +222,7 @@ impl Row {
             reflected_leaves_per_ray: per_ray(2, leaves),
             reflected_pops_per_ray: per_ray(2, pops),
             warnings: record.warnings.join("; "),
+            dispatches: record.dispatches,
         }
     }
 }

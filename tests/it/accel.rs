@@ -12,7 +12,7 @@ use rtbench::accel::{Selection, Structure};
 use rtbench::scene::Scene;
 
 /// Every builder, with options that lead through other code.
-pub const SELECTIONS: [&str; 18] = [
+pub const SELECTIONS: [&str; 20] = [
     "grid",
     "grid:factor=1",
     "grid:x=5",
@@ -25,6 +25,8 @@ pub const SELECTIONS: [&str; 18] = [
     "bvh",
     "bvh:bins=2,max_leaf=1",
     "bvh:bins=32,max_leaf=15",
+    "bvh:max_leaf=15,kt=1",
+    "bvh:max_leaf=15,kt=0,ki=2",
     "ploc-stack",
     "ploc-stack:preset=fastest",
     "ploc-stack:preset=very-fast",
@@ -69,6 +71,38 @@ fn no_bvh_is_deeper_than_the_bound() {
     let Structure::Bvh(bvh) = build("bvh:max_leaf=1,bins=2", &far, 1) else { unreachable!() };
     assert!(bvh.depth > 20, "the scene is no challenge: depth {}", bvh.depth);
     assert!(bvh.depth <= rtbench::accel::bvh::MAX_DEPTH);
+}
+
+/// By the heuristic's own measure: leaves where they pay, and more of them the more a step costs.
+#[test]
+fn a_bvh_s_cost_constants_decide_about_leaves() {
+    let scene = scenes::ordinary().pop().unwrap();
+    let nodes = |selection: &str| {
+        let built = build(selection, &scene, 1);
+        let Structure::Bvh(bvh) = &built else { unreachable!() };
+        (bvh.nodes.len(), rtbench::accel::sah::CostModel::default().bvh(bvh).unwrap())
+    };
+    let (small, large) = (nodes("bvh:max_leaf=1"), nodes("bvh:max_leaf=15"));
+    assert_eq!(nodes("bvh:max_leaf=15,kt=inf,ki=3"), large);
+    let by_cost = ["0.25", "1", "4", "16"].map(|kt| nodes(&format!("bvh:max_leaf=15,kt={kt}")));
+    assert!(by_cost.is_sorted_by(|a, b| a.0 > b.0), "{by_cost:?}");
+    assert!(by_cost[0].0 < small.0 && by_cost[3].0 >= large.0, "{small:?} {by_cost:?} {large:?}");
+    assert!(by_cost[1].1 < small.1 && by_cost[1].1 < large.1, "{small:?} {by_cost:?} {large:?}");
+    // Only the ratio counts
+    assert_eq!(nodes("bvh:max_leaf=15,kt=8,ki=2"), by_cost[2]);
+}
+
+#[test]
+fn names_and_options_of_structures() {
+    let parse = |text: &str| Selection::parse(text).map(|s| format!("{} {}", s.name(), s.variant()));
+    assert_eq!(parse("bvh-packet:max_leaf=8").unwrap(), "bvh max_leaf=8");
+    assert_eq!(parse("bvh:kt=inf").unwrap(), "bvh default");
+    for (wrong, why) in
+        [("bvh:kt=-1", "no value for kt"), ("grid:x=3,x=4", "x is given twice"), (":x=1", "no structure ''")]
+    {
+        let error = parse(wrong).unwrap_err().to_string();
+        assert!(error.contains(why), "{error}");
+    }
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use rtbench::accel::{Method, Structure, Traversal};
 use rtbench::backend::{
     Backend, Config, CountedPixel, DeviceInfo, DeviceType, FrameTime, GivenRay, Interrupted, Pixel, Prepared, Size,
+    Timed,
 };
 use rtbench::bench::environment;
 use rtbench::camera::View;
@@ -43,6 +44,7 @@ pub fn provenance() -> Provenance {
             configurations: 2,
             passes: 2,
             warmup_frames: 1,
+            builds: 1,
             skipped: vec![],
         },
     }
@@ -107,6 +109,8 @@ pub enum Fault {
     WrongTriangle,
     /// One pixel of the counting kernel has another colour.
     CountingDiffers,
+    /// One pixel of the last timed frame names another triangle.
+    TimedDiffers,
     /// Preparing fails: too large.
     NoRoom,
     /// Lost while timing PS, once.
@@ -200,6 +204,14 @@ impl Prepared for FaultyPrepared<'_> {
             return Err(Error::DeviceLost("the driver\nreset".into()));
         }
         self.inner.time_path(config, views, size, interrupted)
+    }
+
+    fn timed(&mut self) -> Result<Timed> {
+        let mut timed = self.inner.timed()?;
+        if self.fault == Fault::TimedDiffers {
+            timed.pixels[5].triangle ^= 1;
+        }
+        Ok(timed)
     }
 
     fn trace(&mut self, rays: &[GivenRay], any_hit: bool) -> Result<Vec<Hit>> {

@@ -54,7 +54,7 @@ pub fn soup(triangles: usize, seed: u32, flat: bool) -> Scene {
 fn open(options: GpuOptions) -> Option<GpuBackend> {
     match GpuBackend::open(&Selector::Best, options) {
         Ok(gpu) => Some(gpu),
-        // CI sets RTBENCH_REQUIRE_GPU, so that a missing driver cannot pass for a passed test
+        // .ci/run sets RTBENCH_REQUIRE_GPU, so that a missing driver cannot pass for a passed test
         Err(error) if std::env::var_os("RTBENCH_REQUIRE_GPU").is_none() => {
             eprintln!("not run: {error}");
             None

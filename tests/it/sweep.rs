@@ -136,6 +136,24 @@ fn a_counting_kernel_that_draws_something_else_is_noticed() {
 }
 
 #[test]
+fn a_timed_frame_that_is_not_the_verified_one_is_noticed() {
+    let swept = swept(Fault::TimedDiffers, usize::MAX, &back);
+    assert_eq!(swept.outcome.unwrap().disagreeing, 2);
+    assert_eq!(rows(&swept.journal), [BAD_GRID, GOOD_STACK].concat());
+    let bad = &swept.journal.configurations[0];
+    assert!(bad.samples.is_none() && bad.message.contains("the last timed frame has 1 pixels"), "{}", bad.message);
+}
+
+#[test]
+fn images_of_a_few_pixels() {
+    let plan = Plan::new(&Request { resolutions: vec!["1,3x5".into()], ..request() }).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let swept = sweep_into(folder, &plan, Earlier::default(), Fault::None, usize::MAX, &back);
+    assert_eq!((swept.outcome.unwrap().failed, swept.finished), (0, 8));
+    assert!(swept.journal.configurations.iter().all(|row| row.status == Status::Ok), "{:?}", rows(&swept.journal));
+}
+
+#[test]
 fn what_does_not_fit_is_an_error_row() {
     let swept = swept(Fault::NoRoom, usize::MAX, &back);
     let outcome = swept.outcome.unwrap();

@@ -46,6 +46,10 @@ impl Prepared for Spoiled<'_> {
         unreachable!("verification does not time")
     }
 
+    fn timed(&mut self) -> Result<Timed> {
+        unreachable!("verification does not time")
+    }
+
     fn trace(&mut self, rays: &[GivenRay], any_hit: bool) -> Result<Vec<Hit>> {
         self.inner.trace(rays, any_hit)
     }
