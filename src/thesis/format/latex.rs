@@ -6,7 +6,7 @@ use crate::thesis::table::{Cell, Table};
 pub const HEADER: &str = "% Needs \\usepackage{longtable} in the preamble.\n";
 
 /// Share of the line that columns of descriptions have together.
-const WORDS: f64 = 0.75;
+const WORDS: f64 = 0.72;
 /// Tables with more columns have smaller letters, or they would be wider than the text of an article.
 const WIDE: usize = 9;
 
@@ -14,7 +14,7 @@ const WIDE: usize = 9;
 pub fn write(table: &Table) -> String {
     let head = format!("\\hline\n{}\\hline\n", head(table));
     let mut text = format!(
-        "\\begingroup\\{}\\setlength{{\\tabcolsep}}{{3pt}}\n\\begin{{longtable}}{{{}}}\n\\caption{{{}}}\\\\\n\
+        "\\begingroup\\{}\\setlength{{\\tabcolsep}}{{2.5pt}}\n\\begin{{longtable}}{{{}}}\n\\caption{{{}}}\\\\\n\
          {head}\\endfirsthead\n{head}\\endhead\n\\hline\n\\endfoot\n",
         if table.key_columns() + table.columns.len() > WIDE { "scriptsize" } else { "footnotesize" },
         columns(table),
