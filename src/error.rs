@@ -29,6 +29,9 @@ pub enum Error {
     /// Ctrl-C.
     #[error("interrupted")]
     Interrupted,
+    /// Not a failure but an answer, where a document was only to be checked: it is not what would be written now.
+    #[error("{}: is not up to date (run the same without --check)", .0.display())]
+    NotUpToDate(PathBuf),
 }
 
 /// A problem with something that the user gave: where it stands, what is wrong, how to mend it.
@@ -74,10 +77,12 @@ impl Error {
         Error::Output { path: path.to_owned(), source }
     }
 
-    /// The process's exit code: 130 after Ctrl-C (128 + SIGINT), 2 for everything that could not run.
+    /// The process's exit code: 130 after Ctrl-C (128 + SIGINT), 1 for the answer "no", 2 for everything that could not
+    /// run.
     pub fn exit_code(&self) -> u8 {
         match self {
             Error::Interrupted => 130,
+            Error::NotUpToDate(_) => 1,
             _ => 2,
         }
     }

@@ -50,6 +50,18 @@ pub struct OptionInfo {
     pub(super) kind: Kind,
 }
 
+impl OptionInfo {
+    /// What its value may be, in words: a list, or a range.
+    pub fn values(&self) -> String {
+        match self.kind {
+            Kind::Count(from, to) => format!("{from} to {to}"),
+            Kind::CountOrAuto(from, to) => format!("auto, or {from} to {to}"),
+            Kind::Number(from, to) => format!("a number from {from} to {to}"),
+            Kind::Word(words) => words.join(", "),
+        }
+    }
+}
+
 /// What an option's value may be.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Kind {

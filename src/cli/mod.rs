@@ -1,7 +1,7 @@
 //! The command line. One file per command; only here is anything printed.
 //!
-//! Results go to standard output, everything else to standard error. Exit codes: 0 all is well, 1 a kernel's answer was
-//! wrong, 2 something could not run, 130 Ctrl-C.
+//! Results go to standard output, everything else to standard error. Exit codes: 0 all is well, 1 a check's answer is no (a
+//! kernel was wrong, a structure is not valid, a document is not up to date), 2 something could not run, 130 Ctrl-C.
 
 mod build;
 mod camera_path;
@@ -44,7 +44,8 @@ Begin with:
   rtbench devices                        what there is to measure
   rtbench report results/RUN -o run.html what was measured, beside the thesis of 2009
 
-Exit codes: 0 all is well, 1 a kernel's answer was wrong, 2 something could not run, 130 Ctrl-C.";
+Exit codes: 0 all is well, 1 a check's answer is no (a kernel was wrong, a structure is not valid, a
+document is not up to date), 2 something could not run, 130 Ctrl-C.";
 
 #[derive(Subcommand)]
 enum Command {
@@ -119,12 +120,26 @@ fn usage(error: &clap::Error) -> ExitCode {
         _ => {
             let text = error.render().to_string();
             let lines = text.lines().map(str::trim).take_while(|line| !line.starts_with("Usage:"));
-            let words: Vec<&str> = lines
+            let lines: Vec<&str> = lines
                 .filter(|line| !line.is_empty() && !line.starts_with("For more information"))
                 .map(|line| line.trim_start_matches("error: ").trim_start_matches("tip: "))
                 .collect();
-            output::complain(&format!("{} (see --help)", words.join("; ")));
+            output::complain(&format!("{} (see --help)", sentence(&lines)));
             ExitCode::from(2)
         }
     }
+}
+
+/// Several lines as one: what follows a colon belongs to it.
+fn sentence(lines: &[&str]) -> String {
+    let mut sentence = String::new();
+    for line in lines {
+        sentence += match sentence.chars().last() {
+            None => "",
+            Some(':') => " ",
+            Some(_) => "; ",
+        };
+        sentence += line;
+    }
+    sentence
 }

@@ -56,7 +56,7 @@ pub struct Into {
     /// a table's number, or `claims`
     #[arg(long, value_name = "FILE", conflicts_with_all = ["output", "format"])]
     into: Option<PathBuf>,
-    /// With --into: change nothing, and fail if the document is not up to date
+    /// With --into: change nothing; exit code 1 if the document is not up to date
     #[arg(long, requires = "into")]
     check: bool,
 }
@@ -65,7 +65,8 @@ impl Into {
     /// Puts the blocks in their places; false if no document was named.
     ///
     /// # Errors
-    /// A document that cannot be read or written, or has no place for them; with --check one that would change.
+    /// A document that cannot be read or written, or has no place for them; with --check
+    /// [`Error::NotUpToDate`] for one that would change.
     pub fn splice(&self, blocks: impl FnOnce() -> Vec<Block>, need: Need) -> Result<bool> {
         let Some(path) = &self.into else { return Ok(false) };
         let text = std::fs::read_to_string(path)
@@ -73,7 +74,7 @@ impl Into {
         let new = splice::splice(path, &text, &blocks(), need)?;
         match (new == text, self.check) {
             (true, _) => Ok(true),
-            (false, true) => Err(Error::file(path, None, "is not up to date", "run the same without --check")),
+            (false, true) => Err(Error::NotUpToDate(path.clone())),
             (false, false) => files::replace(path, new.as_bytes()).map(|()| true),
         }
     }

@@ -1,13 +1,17 @@
 //! `rtbench structures`: what can be measured.
 
 use super::output;
-use crate::accel;
+use crate::accel::{self, OptionInfo};
 use crate::error::Result;
+use crate::thesis::format::wrap;
 use clap::Args;
 
-/// List structures with their options, as --structure takes them
+/// List structures with their options and values, as --structure takes them
 #[derive(Args, Debug)]
 pub struct Arguments {}
+
+/// Where an option's description begins.
+const INDENT: &str = "                     ";
 
 /// Runs the command.
 ///
@@ -20,13 +24,18 @@ pub fn run(_: &Arguments) -> Result<()> {
         if !variant.paper.is_empty() {
             text += &format!("      after {}\n", variant.paper);
         }
-        for option in variant.build_options.iter().chain(variant.walk_options) {
-            text += &format!("      {:<14} {} (default {})\n", option.key, option.meaning, option.default);
-        }
+        text += &variant.build_options.iter().chain(variant.walk_options).map(describe).collect::<String>();
     }
     text += "\nOptions of all structures\n";
-    for option in accel::COMMON_OPTIONS {
-        text += &format!("      {:<14} {} (default {})\n", option.key, option.meaning, option.default);
-    }
+    text += &accel::COMMON_OPTIONS.iter().map(describe).collect::<String>();
     output::print(&text)
+}
+
+/// An option: its key, what it does, and what it takes.
+fn describe(option: &OptionInfo) -> String {
+    let meaning = wrap(&format!("{} (default {})", option.meaning, option.default), INDENT);
+    let values = wrap(&option.values(), &format!("{INDENT}= "));
+    // Only the first line of the values begins with the sign
+    let values = values.replace(&format!("\n{INDENT}= "), &format!("\n{INDENT}  "));
+    format!("      {:<14} {}{values}", option.key, meaning.trim_start())
 }

@@ -8,7 +8,7 @@ use crate::thesis::data::Data;
 use crate::thesis::format::{self, Format};
 use crate::thesis::splice::{Block, Need};
 use crate::thesis::table::Table;
-use crate::thesis::tables::{self, Options, Rows};
+use crate::thesis::tables::{self, Options, Rows, side};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -30,12 +30,14 @@ pub struct Arguments {
     /// Put the published number and the ratio to it beside each measured one
     #[arg(long, value_parser = ["thesis"])]
     beside: Option<String>,
-    /// The thesis's card that measured times stand beside
-    #[arg(long, default_value = "GTX280", value_name = "GTX280|8600GT")]
-    card: String,
-    /// Side of the square image in tables 5.12 to 5.14
-    #[arg(long, default_value_t = 1024, value_name = "PIXELS")]
-    resolution: u32,
+    /// The thesis's card whose numbers are shown, alone or beside measured ones [default: each table's own, 8600GT for
+    /// 5.7 and B.4 to B.6, GTX280 for the others]
+    #[arg(long, value_name = "GTX280|8600GT")]
+    card: Option<String>,
+    /// Side of the square image in tables 5.12 to 5.14 [default: the largest of the thesis's (1024, 768, 512, 256) at
+    /// which nearly every scene was measured]
+    #[arg(long, value_name = "PIXELS")]
+    resolution: Option<u32>,
     /// What a step of a tree is, in tables 5.10 and 5.11
     #[arg(long, value_enum, default_value_t)]
     convention: Convention,
@@ -72,22 +74,27 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     if arguments.beside.is_some() && sources.runs.is_empty() {
         output::note("nothing stands beside the published numbers: give a run");
     }
+    let card = arguments.card.as_deref().map(|name| card(&sources.published, name)).transpose()?;
     let options = Options {
         beside: arguments.beside.is_some(),
         convention: arguments.convention,
-        resolution: arguments.resolution,
-        card: card(&sources.published, &arguments.card)?,
+        resolution: arguments.resolution.unwrap_or_else(|| side::usual(&sources.data, card.unwrap_or(0))),
+        card,
         rows: arguments.rows,
     };
-    let tables = tables::build(&sources.data, &sources.published, &options, &ids);
+    let mut tables = tables::build(&sources.data, &sources.published, &options, &ids);
     let (all, need) =
         if ids.len() == tables::IDS.len() { (&tables::IDS[..], Need::Any) } else { (&ids[..], Need::All) };
     if arguments.into.splice(|| blocks(&tables, all), need)? {
         return Ok(());
     }
-    let empty: Vec<&str> = ids.into_iter().filter(|id| tables.iter().all(|table| table.id != *id)).collect();
-    if !empty.is_empty() {
+    let empty = tables::without_numbers(&sources.data, &sources.published, &options, &ids);
+    if !empty.is_empty() && !sources.runs.is_empty() {
         output::note(&format!("nothing was measured for: {}", empty.join(", ")));
+    }
+    if arguments.rows == Rows::Measured && need == Need::Any {
+        // Named by the line above; a table that was asked for by its number stands in any case
+        tables.retain(|table| !table.rows.is_empty());
     }
     deliver(&format::write(&tables, arguments.format), arguments.output.as_deref())
 }

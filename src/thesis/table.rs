@@ -147,6 +147,11 @@ impl Cell {
         matches!(self, Cell::Text(_) | Cell::Number { value: Some(_), .. })
     }
 
+    /// True if a published number stands beside it.
+    pub fn is_published(&self) -> bool {
+        matches!(self, Cell::Number { thesis: Some(_), .. })
+    }
+
     /// Measured by published, where there are both and the quotient says something.
     pub fn ratio(&self) -> Option<f64> {
         match self {
@@ -176,7 +181,7 @@ impl Row {
     /// The lines that it takes.
     pub fn lines(&self, beside: bool) -> Vec<Line> {
         let mut lines = vec![Line::Value];
-        if beside && self.cells.iter().any(|c| matches!(c, Cell::Number { thesis: Some(_), .. })) {
+        if beside && self.cells.iter().any(Cell::is_published) {
             lines.push(Line::Thesis);
             if self.cells.iter().any(|c| c.ratio().is_some()) {
                 lines.push(Line::Ratio);

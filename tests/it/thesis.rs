@@ -4,7 +4,9 @@ mod claims; // every claim in every verdict, also where it is false
 mod command; // the program: broken and empty runs, files, splicing
 mod committed; // the runs in git, and what the README shows of them
 mod counts; // grid steps and tests along BART's cameras
+mod empty; // tables without a measurement, cards and sizes that were chosen
 mod figures; // XML, what is drawn and what is not
+mod latex; // what a longtable has to have
 mod published; // every row parses; the memory model against all 27 sizes
 mod report; // one page, nothing from outside, everything escaped
 mod runs; // which scene, device and variant a record belongs to

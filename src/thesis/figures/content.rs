@@ -7,6 +7,7 @@ use crate::backend::Config;
 use crate::thesis::data::{Data, Frame, STRUCTURES, structure_title};
 use crate::thesis::scenes::SceneKey;
 use crate::thesis::sweeps::{grid_sweep, resolution_sweep};
+use crate::thesis::tables::side::representative;
 use crate::thesis::variant::Variant;
 
 /// Suffix of the file's name, caption, picture.
@@ -173,7 +174,9 @@ fn four_rays(data: &Data, device: usize) -> Vec<Drawn> {
             }
             let style = theme::structure(structure);
             series.push(line(format!("{}, four rays", structure_title(structure)), style, false, &frames));
-            let frames = sweep(&base);
+            // Only where both were measured: other sizes of the image are no part of the fine sweep
+            let both = |f: &&Frame| frames.iter().any(|four| four.width == f.width);
+            let frames: Vec<&Frame> = sweep(&base).into_iter().filter(both).collect();
             if frames.len() > 1 {
                 series.push(line(format!("{}, image", structure_title(structure)), style, true, &frames));
             }
@@ -249,9 +252,7 @@ fn bars_of(data: &Data, device: usize, config: Config) -> Option<Drawn> {
             && f.width == f.height
             && f.variant == Variant::of_thesis(f.scene.thesis(), &f.structure)
     };
-    // The size with the most bars; of equals the largest
-    let count = |side: u32| data.frames.iter().filter(default).filter(|f| f.width == side).count();
-    let side = data.sides(device).into_iter().max_by_key(|side| (count(*side), *side)).filter(|s| count(*s) > 0)?;
+    let side = representative(data, |f| (f.device, f.config) == (device, config))?;
     let frames: Vec<&Frame> = data.frames.iter().filter(default).filter(|f| f.width == side).collect();
     let mut structures: Vec<&str> = frames.iter().map(|f| f.structure.as_str()).collect();
     structures.sort_by_key(|s| (theme::structure(s), *s));

@@ -1,25 +1,77 @@
-//! Tables as LaTeX: plain `tabular`, no packages.
+//! Tables as LaTeX: `longtable`, because a float can neither break nor shrink and some tables have more lines than a page.
 
-use crate::thesis::table::Table;
+use crate::thesis::table::{Cell, Table};
 
-/// A table environment with its title as caption and its notes below.
+/// Before the first table.
+pub const HEADER: &str = "% Needs \\usepackage{longtable} in the preamble.\n";
+
+/// Share of the line that columns of descriptions have together.
+const WORDS: f64 = 0.72;
+/// Tables with more columns have smaller letters, or they would be wider than the text of an article.
+const WIDE: usize = 9;
+
+/// A longtable with its title as caption, its headings on every page, and its notes below.
 pub fn write(table: &Table) -> String {
-    let headings = table.headings();
-    let columns: String = (0..headings.len()).map(|i| if i < table.key_columns() { 'l' } else { 'r' }).collect();
-    let mut text = format!("\\begin{{table}}\n\\caption{{{}}}\n", escape(&table.caption()));
-    text += &format!("\\begin{{tabular}}{{{columns}}}\n\\hline\n{}\\hline\n", line(&headings));
+    let head = format!("\\hline\n{}\\hline\n", head(table));
+    let mut text = format!(
+        "\\begingroup\\{}\\setlength{{\\tabcolsep}}{{2.5pt}}\n\\begin{{longtable}}{{{}}}\n\\caption{{{}}}\\\\\n\
+         {head}\\endfirsthead\n{head}\\endhead\n\\hline\n\\endfoot\n",
+        if table.key_columns() + table.columns.len() > WIDE { "scriptsize" } else { "footnotesize" },
+        columns(table),
+        escape(&caption(table)),
+    );
+    let mut lines = table.rows.iter().flat_map(|row| {
+        let number = row.lines(table.beside).len();
+        (1..=number).map(move |line| line == number)
+    });
     for row in table.body("--") {
-        text += &line(&row);
+        // A page may end below a row, not between its lines
+        let end = if lines.next().unwrap_or(true) { "" } else { "*" };
+        text += &format!("{} \\\\{end}\n", cells(&row));
     }
-    text += "\\hline\n\\end{tabular}\n";
+    text += "\\end{longtable}\n";
     for note in &table.notes {
-        text += &format!("\\par {{\\footnotesize {}}}\n", escape(note));
+        text += &format!("\\noindent {}\\par\n", escape(note));
     }
-    text + "\\end{table}\n"
+    text + "\\endgroup\n"
 }
 
-fn line(cells: &[String]) -> String {
-    format!("{} \\\\\n", cells.iter().map(|cell| escape(cell)).collect::<Vec<_>>().join(" & "))
+/// What LaTeX prints behind its own "Table N:".
+fn caption(table: &Table) -> String {
+    let kind = if table.id == "5.3.4" { "section" } else { "table" };
+    format!("{} (thesis {kind} {})", table.title, table.id)
+}
+
+/// Alignment: names to the left, numbers to the right, descriptions in columns that break their lines.
+fn columns(table: &Table) -> String {
+    let words = |index: usize| table.rows.iter().any(|row| matches!(row.cells.get(index), Some(Cell::Text(_))));
+    let share = WORDS / (0..table.columns.len()).filter(|index| words(*index)).count().max(1) as f64;
+    let of = |index| if words(index) { format!("p{{{share:.2}\\linewidth}}") } else { "r".into() };
+    "l".repeat(table.key_columns()) + &(0..table.columns.len()).map(of).collect::<String>()
+}
+
+/// Groups above the columns that they span, names, and units: as far as they are used.
+fn head(table: &Table) -> String {
+    let keys = |filled: bool| -> Vec<String> {
+        let names = table.keys.iter().map(String::as_str).chain(table.beside.then_some(""));
+        names.map(|name| if filled { escape(name) } else { String::new() }).collect()
+    };
+    let mut lines = Vec::new();
+    if table.columns.iter().any(|column| !column.group.is_empty()) {
+        let groups = table.columns.chunk_by(|a, b| a.group == b.group);
+        let spans = groups.map(|g| format!("\\multicolumn{{{}}}{{c}}{{{}}}", g.len(), escape(&g[0].group)));
+        lines.push([keys(false), spans.collect()].concat());
+    }
+    lines.push([keys(true), table.columns.iter().map(|column| escape(&column.name)).collect()].concat());
+    if table.columns.iter().any(|column| !column.unit.is_empty()) {
+        let unit = |text: &str| if text.is_empty() { String::new() } else { format!("{{[}}{}{{]}}", escape(text)) };
+        lines.push([keys(false), table.columns.iter().map(|column| unit(&column.unit)).collect()].concat());
+    }
+    lines.iter().map(|line| format!("{} \\\\\n", line.join(" & "))).collect()
+}
+
+fn cells(cells: &[String]) -> String {
+    cells.iter().map(|cell| escape(cell)).collect::<Vec<_>>().join(" & ")
 }
 
 fn escape(text: &str) -> String {
@@ -35,6 +87,8 @@ fn escape(text: &str) -> String {
             ']' => escaped += "{]}",
             '<' => escaped += "$<$",
             '>' => escaped += "$>$",
+            // The old fonts, which are still the default, have another sign in its place
+            '|' => escaped += "\\textbar{}",
             '\n' | '\r' => escaped.push(' '),
             _ => escaped.push(c),
         }

@@ -19,7 +19,7 @@ pub enum Format {
     Markdown,
     /// One line per number: table, row, column, unit, value, published value, ratio
     Csv,
-    /// A table environment per table, no packages needed
+    /// A longtable per table, which continues on the next page: needs \usepackage{longtable}, which every LaTeX has
     Latex,
 }
 
@@ -30,6 +30,6 @@ pub fn write(tables: &[Table], format: Format) -> String {
         Format::Text => join(text::write),
         Format::Markdown => join(markdown::write),
         Format::Csv => csv::write(tables),
-        Format::Latex => join(latex::write),
+        Format::Latex => latex::HEADER.to_owned() + &join(latex::write),
     }
 }

@@ -63,6 +63,12 @@ pub fn write(table: &Table) -> String {
         let most = names.saturating_sub(too_much).max(NAME) as u16;
         column.set_constraint(ColumnConstraint::UpperBoundary(Width::Fixed(most + 1)));
     }
+    if width(&drawn) > WIDTH {
+        // Then columns stand closer together: one space is left between them
+        drawn.column_iter_mut().skip(1).for_each(|column| {
+            column.set_padding((0, 0));
+        });
+    }
     text += &drawn.trim_fmt();
     text.push('\n');
     for note in &table.notes {

@@ -11,7 +11,7 @@ use super::claims::judge;
 use super::data::Data;
 use super::figures::{self, Figure, Missing};
 use super::runs::RecordedRun;
-use super::tables::{IDS, Options, build};
+use super::tables::{IDS, Options, Rows, build, without_numbers};
 use crate::error::Result;
 use html::escape;
 
@@ -31,14 +31,17 @@ pub struct Sources<'a> {
 /// A picture that is there and cannot be read.
 pub fn write(sources: &Sources, options: &Options) -> Result<String> {
     let (data, published) = (sources.data, sources.published);
-    let findings = judge(data, published, options.card);
+    let findings = judge(data, published, options.card.unwrap_or(0));
     let (figures, missing) = figures::all(data)?;
-    let tables = build(data, published, options, &IDS);
-    let absent: Vec<&str> = IDS.into_iter().filter(|id| tables.iter().all(|table| table.id != *id)).collect();
+    let mut tables = build(data, published, options, &IDS);
+    if options.rows == Rows::Measured {
+        tables.retain(|table| !table.rows.is_empty());
+    }
+    let absent = without_numbers(data, published, options, &IDS);
 
     let title =
         if sources.runs.is_empty() { "The thesis of 2009, as printed" } else { "The thesis of 2009, measured anew" };
-    let mut body = format!("<h1>{title}</h1>\n{}", lead(sources));
+    let mut body = format!("<h1>{title}</h1>\n{}", lead(sources, options.rows));
     body += "<nav><a href=\"#claims\">Claims</a> <a href=\"#tables\">Tables</a> <a href=\"#figures\">Figures</a> \
              <a href=\"#pictures\">Pictures</a> <a href=\"#differences\">What differs</a> \
              <a href=\"#provenance\">Provenance</a></nav>\n";
@@ -52,7 +55,7 @@ pub fn write(sources: &Sources, options: &Options) -> Result<String> {
 }
 
 /// What the page is about, in a few lines.
-fn lead(sources: &Sources) -> String {
+fn lead(sources: &Sources, rows: Rows) -> String {
     if sources.runs.is_empty() {
         return "<p class=\"lead\">The numbers that were printed, and what its claims come to by them. Give recorded runs to \
                 see them measured anew.</p>\n"
@@ -61,13 +64,14 @@ fn lead(sources: &Sources) -> String {
     let devices: Vec<String> = sources.data.devices.iter().map(|d| escape(&d.label)).collect();
     let mut text = format!(
         "<p class=\"lead\">Ray tracing with a uniform grid, a kd-tree and a BVH: every table, figure and claim that could be \
-         made of {} on {}. Numbers of 2009 stand below the measured ones; what was not measured is empty and named.</p>\n",
+         made of {} on {}. Numbers of 2009 stand below the measured ones; what was not measured is {} and named.</p>\n",
         if sources.runs.len() == 1 {
             "one recorded run".into()
         } else {
             format!("{} recorded runs", sources.runs.len())
         },
         devices.join(", "),
+        if rows == Rows::Measured { "left out" } else { "empty" },
     );
     if sources.data.devices.iter().any(super::data::Device::is_software) {
         text += "<p class=\"warning\">At least one device computes on the CPU (a software rasteriser, or the CPU twins of the \

@@ -6,9 +6,11 @@ use crate::results::picture::{FOLDER, STEPS};
 use crate::thesis::runs::RecordedRun;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+/// What a step map shows: a sweep renders all of them with the same structure, whatever it measures.
+const STEPS_IN_WORDS: &str = "steps of bvh-stack (one ray per thread) per pixel, all ray types: the brighter, the more";
 /// What every PNG begins with.
 const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 /// Larger ones are left out and named: a page has to stay one that can be sent.
@@ -34,14 +36,12 @@ pub fn write(runs: &[RecordedRun]) -> Result<String> {
     if found.is_empty() {
         return Ok(format!("<p class=\"note\">The runs' folders have no pictures.</p>\n{notes}"));
     }
-    let mut scenes: Vec<&str> = found.keys().map(|name| name.strip_suffix(STEPS).unwrap_or(name)).collect();
-    scenes.dedup();
+    // Sorted by the scene's whole name: `conference-obj` stands between `conference` and `conference-steps`
+    let scenes: BTreeSet<&str> = found.keys().map(|name| name.strip_suffix(STEPS).unwrap_or(name)).collect();
     let mut html = String::new();
     for scene in scenes {
         html += &format!("<h3>{}</h3>\n<div class=\"pair\">\n", escape(scene));
-        for (name, what) in
-            [(scene.to_owned(), "picture"), (format!("{scene}{STEPS}"), "steps per pixel: the brighter, the more")]
-        {
+        for (name, what) in [(scene.to_owned(), "picture"), (format!("{scene}{STEPS}"), STEPS_IN_WORDS)] {
             if let Some(bytes) = found.get(&name) {
                 html += &format!(
                     "<figure><img alt=\"{}\" src=\"data:image/png;base64,{}\"><figcaption>{what}</figcaption></figure>\n",

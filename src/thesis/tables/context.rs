@@ -35,10 +35,20 @@ impl Context<'_> {
         Cell::Number { value: ask(self.data), thesis }
     }
 
-    /// The same for what depends on the device: the published card is the one that was chosen.
-    pub fn device_cell(&self, device: usize, ask: impl Fn(&Data, usize) -> Option<f64>) -> Cell {
-        let thesis = if self.options.beside { ask(self.published, self.options.card) } else { None };
+    /// The same for what depends on the device, with the published card that stands beside it.
+    pub fn device_cell(&self, device: usize, card: usize, ask: impl Fn(&Data, usize) -> Option<f64>) -> Cell {
+        let thesis = if self.options.beside { ask(self.published, card) } else { None };
         Cell::Number { value: ask(self.data, device), thesis }
+    }
+
+    /// A published card by its name.
+    pub fn card(&self, label: &str) -> usize {
+        self.published.devices.iter().position(|d| d.label == label).unwrap_or(0)
+    }
+
+    /// What a device is called in titles; the thesis's second one has tables of its own, measured or not.
+    pub fn label(&self, device: usize) -> &str {
+        self.data.devices.get(device).map_or("a second device", |d| d.label.as_str())
     }
 
     /// A table with the notes that follow from its rows: which scenes are absent and what the others are.
@@ -100,6 +110,20 @@ impl Context<'_> {
             notes.push("Scenes with a number in brackets (their triangles) are not the thesis's.".into());
         }
         notes
+    }
+
+    /// A published table without rows: it is about a card that was not asked for.
+    pub fn of_another_card(&self, id: &str, title: &str, wanted: usize, where_it_is: &str) -> Table {
+        let label = &self.published.devices[wanted].label;
+        Table {
+            id: id.into(),
+            title: format!("{title}, {label}"),
+            keys: vec!["scene".into()],
+            columns: Vec::new(),
+            rows: Vec::new(),
+            notes: vec![format!("The thesis has no numbers of the {label} in this table: they are in {where_it_is}.")],
+            beside: false,
+        }
     }
 
     /// What was measured and gave no number, for a device and one or all ray configurations.

@@ -42,13 +42,35 @@ fn device_table(data: &Data, title: &str) -> Table {
 }
 
 /// Speed-ups: how many times as long each further device takes as the first, at the largest common resolution; and how
-/// far they range per structure. None with a single device.
+/// far they range per structure. Without a second device a table that says so.
 pub fn speedups(context: &Context) -> Vec<Table> {
     let mut tables = pairs(context.data);
-    if context.options.beside && !tables.is_empty() {
+    if tables.is_empty() {
+        let only_one = context.data.devices.len() < 2;
+        let absent = if only_one { "a second device" } else { "the same scene on two devices, at the same size" };
+        tables.push(Table {
+            title: "Speed-ups between devices".into(),
+            notes: vec![format!("Not measured: {absent}.")],
+            ..table_of_pair()
+        });
+    }
+    if context.options.beside {
         tables.extend(pairs(context.published));
     }
     tables
+}
+
+/// A table of speed-ups without anything in it.
+fn table_of_pair() -> Table {
+    Table {
+        id: "5.3.4".into(),
+        title: String::new(),
+        keys: ["scene", "rays", "side"].map(str::to_owned).into(),
+        columns: STRUCTURES.map(|s| Column::new(structure_title(s), "times", Form::Fixed(2))).into(),
+        rows: Vec::new(),
+        notes: Vec::new(),
+        beside: false,
+    }
 }
 
 fn pairs(data: &Data) -> Vec<Table> {
@@ -57,7 +79,6 @@ fn pairs(data: &Data) -> Vec<Table> {
 
 /// The first device and another.
 fn pair(data: &Data, other: usize) -> Option<Table> {
-    let columns = STRUCTURES.map(|s| Column::new(structure_title(s), "times", Form::Fixed(2)));
     let mut rows = Vec::new();
     let mut range = [(f64::INFINITY, 0.0f64); 3];
     for scene in &data.scenes {
@@ -80,17 +101,14 @@ fn pair(data: &Data, other: usize) -> Option<Table> {
     let ranges: Vec<String> =
         ranges.map(|(s, (low, high))| format!("{} {low:.1} to {high:.1}", structure_title(s))).collect();
     let (first, second) = (&data.devices[0].label, &data.devices[other].label);
-    let key = |name: &str| name.to_owned();
+    let year = if data.published { " in 2009" } else { "" };
     (!rows.is_empty()).then(|| Table {
-        id: "5.3.4".into(),
-        title: format!("Speed-up of {first} over {second}"),
-        keys: vec![key("scene"), key("rays"), key("side")],
-        columns: columns.into(),
+        title: format!("Speed-up of {first} over {second}{year}"),
         rows,
         notes: vec![
             format!("Mean frame time on {second} / on {first}, at the largest common resolution."),
             format!("Range: {}.", ranges.join(", ")),
         ],
-        beside: false,
+        ..table_of_pair()
     })
 }

@@ -4,6 +4,7 @@ mod context;
 mod counts;
 mod devices;
 pub mod occupancy;
+pub mod side;
 mod structures;
 mod times;
 
@@ -11,7 +12,7 @@ pub use times::CARD_CONFIGS;
 
 use super::convention::Convention;
 use super::data::Data;
-use super::table::Table;
+use super::table::{Row, Table};
 use crate::error::{Error, Result};
 use context::Context;
 
@@ -42,15 +43,15 @@ pub struct Options {
     pub convention: Convention,
     /// Side of the image in tables 5.12 to 5.14; 1024 in the thesis.
     pub resolution: u32,
-    /// Index of the published card that measured times stand beside.
-    pub card: usize,
+    /// Index of the published card whose numbers are shown, alone or beside measured ones; none: each table's own.
+    pub card: Option<usize>,
     /// Which rows.
     pub rows: Rows,
 }
 
 impl Default for Options {
     fn default() -> Options {
-        Options { beside: false, convention: Convention::default(), resolution: 1024, card: 0, rows: Rows::All }
+        Options { beside: false, convention: Convention::default(), resolution: 1024, card: None, rows: Rows::All }
     }
 }
 
@@ -77,18 +78,25 @@ pub fn select(list: &str) -> Result<Vec<&'static str>> {
     Ok(ids)
 }
 
-/// The tables of these numbers. A number gives no table where nothing can be in it (no second device), and several where
-/// several devices were measured.
+/// The tables of these numbers: at least one of each, several where several devices were measured. What was not measured
+/// stands empty, and a note names it; with [`Rows::Measured`] it has no rows.
 pub fn build(data: &Data, published: &Data, options: &Options, ids: &[&str]) -> Vec<Table> {
     let options = Options { beside: options.beside && !data.published, ..options.clone() };
     let context = Context { data, published, options: &options };
     let mut tables: Vec<Table> = ids.iter().flat_map(|id| one(&context, id)).collect();
     for table in &mut tables {
-        // Rows were chosen by the context; a table without any would have nothing but a heading
+        // The notes were made of all rows: they name what is left out here
         table.rows.retain(|row| options.rows != Rows::Measured || row.is_filled());
     }
-    tables.retain(|table| !table.rows.is_empty());
     tables
+}
+
+/// Those of these numbers whose tables have nothing of `data` in them.
+pub fn without_numbers<'a>(data: &Data, published: &Data, options: &Options, ids: &[&'a str]) -> Vec<&'a str> {
+    let options = Options { beside: false, ..options.clone() };
+    let tables = build(data, published, &options, ids);
+    let is_empty = |id: &&str| tables.iter().filter(|t| t.id == *id).all(|t| !t.rows.iter().any(Row::is_filled));
+    ids.iter().copied().filter(is_empty).collect()
 }
 
 fn one(context: &Context, id: &str) -> Vec<Table> {

@@ -3,10 +3,11 @@
 //! wgpu has no register limit. What a limit is for is the number of threads that a processor can hold at a time; here the
 //! work-group's shape and the memory of the kd-tree's stack decide about that, so these are measured instead.
 
+use super::Rows;
 use super::context::Context;
 use crate::backend::Config;
 use crate::thesis::data::{Data, Frame, STRUCTURES, structure_title};
-use crate::thesis::published::GT8600;
+use crate::thesis::published::{GT8600, GTX280};
 use crate::thesis::scenes::SceneKey;
 use crate::thesis::table::{Cell, Column, Form, Row, Table};
 use crate::thesis::variant::Variant;
@@ -16,26 +17,28 @@ pub fn is_stand_in(key: &str, value: &str) -> bool {
     key == "group" || (key == "memory" && value == "private")
 }
 
-/// Table 5.7 or 5.8. The first device stands for the faster card (5.8), further ones for the slower (5.7).
+/// Table 5.7 or 5.8. The first device stands for the faster card (5.8), further ones for the slower (5.7); without a second
+/// one, 5.7 stands empty.
 pub fn occupancy(context: &Context, id: &str) -> Vec<Table> {
-    let published = || {
-        let device = context.published.devices.iter().position(|d| (d.label == GT8600) == (id == "5.7"));
-        register_limit(context.published, id, device.unwrap_or(0))
-    };
+    let own = context.card(if id == "5.7" { GT8600 } else { GTX280 });
+    let card = context.options.card.unwrap_or(own);
+    let printed_as = if card == context.card(GT8600) { "5.7" } else { "5.8" };
     if context.data.published {
-        return vec![published()];
+        let other = || context.of_another_card(id, REGISTER_LIMIT, card, &format!("table {printed_as}"));
+        return vec![if card == own { register_limit(context.data, id, card, "published") } else { other() }];
     }
-    let devices = (0..context.data.devices.len()).filter(|device| (*device == 0) == (id == "5.8"));
-    let mut tables: Vec<Table> = devices.map(|device| stand_in(context.data, id, device)).collect();
-    tables.retain(|table| !table.rows.is_empty());
-    if context.options.beside && !tables.is_empty() {
-        tables.push(published());
+    let devices = if id == "5.8" { 0..1 } else { 1..context.data.devices.len().max(2) };
+    let mut tables: Vec<Table> = devices.map(|device| stand_in(context, id, device)).collect();
+    if context.options.beside {
+        tables.push(register_limit(context.published, id, card, &format!("published as table {printed_as}")));
     }
     tables
 }
 
+const REGISTER_LIMIT: &str = "Effect of a register limit, PSR";
+
 /// As printed: rows by structure and registers, columns by scene.
-fn register_limit(data: &Data, id: &str, device: usize) -> Table {
+fn register_limit(data: &Data, id: &str, device: usize, published: &str) -> Table {
     let of_device: Vec<_> = data.register_limit.iter().filter(|row| row.device == device).collect();
     let mut scenes = Vec::new();
     let mut rows: Vec<Row> = Vec::new();
@@ -64,7 +67,7 @@ fn register_limit(data: &Data, id: &str, device: usize) -> Table {
     }
     Table {
         id: id.into(),
-        title: format!("Effect of a register limit, PSR, {} (published)", data.devices[device].label),
+        title: format!("{REGISTER_LIMIT}, {} ({published})", data.devices[device].label),
         keys: ["structure", "registers", "occupancy %"].map(str::to_owned).into(),
         columns: columns.collect(),
         rows,
@@ -113,12 +116,28 @@ pub fn stand_ins(data: &Data, device: usize) -> Vec<StandIn<'_>> {
     found
 }
 
-fn stand_in(data: &Data, id: &str, device: usize) -> Table {
-    let pairs = stand_ins(data, device);
-    let mut scenes: Vec<&SceneKey> = pairs.iter().map(|p| &p.base.scene).collect();
+/// What a device without any stand-in has rows for: what the preset `thesis` measures.
+const WANTED: [(&str, &str); 5] = [
+    ("grid", "group=16x4"),
+    ("grid", "group=16x16"),
+    ("kdtree", "group=16x4"),
+    ("kdtree", "group=16x16"),
+    ("kdtree", "memory=private"),
+];
+
+fn stand_in(context: &Context, id: &str, device: usize) -> Table {
+    let pairs = stand_ins(context.data, device);
+    let mut scenes: Vec<SceneKey> = pairs.iter().map(|p| p.base.scene.clone()).collect();
+    let measured = scenes.clone();
+    let mut names: Vec<(&str, &str)> = pairs.iter().map(|p| (p.base.structure.as_str(), p.option.as_str())).collect();
+    if context.options.rows != Rows::Measured {
+        scenes.extend(context.published.register_limit.iter().map(|row| SceneKey::Thesis(row.scene)));
+        if names.is_empty() {
+            names.extend(WANTED);
+        }
+    }
     scenes.sort();
     scenes.dedup();
-    let mut names: Vec<(&str, &str)> = pairs.iter().map(|p| (p.base.structure.as_str(), p.option.as_str())).collect();
     names.sort_unstable();
     names.dedup();
     let mut rows: Vec<Row> = Vec::new();
@@ -142,20 +161,30 @@ fn stand_in(data: &Data, id: &str, device: usize) -> Table {
         });
         rows.push(Row { keys: vec![structure_title(structure).into(), option.into()], cells: cells.collect() });
     }
+    let mut notes = Vec::new();
+    let absent: Vec<String> = scenes.iter().filter(|s| !measured.contains(s)).map(ToString::to_string).collect();
+    if device >= context.data.devices.len() {
+        notes.push("Not measured: a second device.".into());
+    } else if pairs.is_empty() {
+        notes.push("Not measured: reflected rays with another shape of work-groups or memory of the stack.".into());
+    } else if !absent.is_empty() {
+        notes.push(format!("Not measured: {}.", absent.join(", ")));
+    }
+    notes.extend([
+        "A stand-in: wgpu has no register limit, so the thesis's question (how many threads fit on a processor) is \
+         asked through the shape of work-groups and the memory of the stack."
+            .into(),
+        "Faster: 1 - time with the option / time by default; below zero it is slower. Default: groups of 8x8, the \
+         kd-tree's stack in work-group memory."
+            .into(),
+    ]);
     Table {
         id: id.into(),
-        title: format!("Group shape and memory of the stack, PSR, {}", data.devices[device].label),
+        title: format!("Group shape and memory of the stack, PSR, {}", context.label(device)),
         keys: vec!["structure".into(), "option".into()],
         columns: scenes.iter().flat_map(|s| columns_of(&s.to_string())).collect(),
         rows,
-        notes: vec![
-            "A stand-in: wgpu has no register limit, so the thesis's question (how many threads fit on a processor) is \
-             asked through the shape of work-groups and the memory of the stack."
-                .into(),
-            "Faster: 1 - time with the option / time by default; below zero it is slower. Default: groups of 8x8, the \
-             kd-tree's stack in work-group memory."
-                .into(),
-        ],
+        notes,
         beside: false,
     }
 }

@@ -2,7 +2,8 @@
 
 use super::context::{Context, repeated};
 use crate::accel::Properties;
-use crate::thesis::data::{Built, STRUCTURES, structure_title};
+use crate::scene::catalogue;
+use crate::thesis::data::{Built, Data, STRUCTURES, structure_title};
 use crate::thesis::scenes::SceneKey;
 use crate::thesis::table::{Cell, Column, Form, Row, Table};
 
@@ -16,19 +17,33 @@ pub fn scenes(context: &Context) -> Table {
         let cells = vec![
             context.cell(|data| Some(data.scene(&key)?.triangles as f64)),
             context.cell(|data| Some(data.scene(&key)?.vertices as f64)),
-            context.cell(|data| Some(data.scene(&key)?.lights? as f64)),
+            context.cell(|data| Some(data.scene(&key)?.lights?.max(path_lights(data, &key)) as f64)),
         ];
         (key.clone(), Row { keys: vec![key.to_string()], cells })
     });
     let rows: Vec<_> = rows.collect();
     let mut table = context.table("5.1", "Scenes".into(), &["scene"], columns.into(), rows);
     if !context.data.published {
+        let lit = |key: &&SceneKey| path_lights(context.data, key) > 0;
+        let lit: Vec<String> =
+            context.data.scenes.iter().map(|s| &s.key).filter(lit).map(ToString::to_string).collect();
+        if !lit.is_empty() {
+            table.notes.push(format!("Light of the camera path, because the file has none: {}.", lit.join(", ")));
+        }
         table.notes.push(
-            "Lights are those of the scene's file; where it has none, the camera path or the catalogue brings one."
+            "Other lights are those of the scene's file or the catalogue's; with 0 the camera path brings its own."
                 .into(),
         );
     }
     table
+}
+
+/// Lights of the camera path that a thesis's scene is measured with, where its file has none. Records have the file's
+/// number only; the catalogue has the one that the scene is measured with.
+fn path_lights(data: &Data, key: &SceneKey) -> u64 {
+    let without = key.thesis().filter(|_| data.scene(key).is_some_and(|scene| scene.lights == Some(0)));
+    let lights = without.and_then(|scene| catalogue::find(scene.name())?.lights);
+    lights.unwrap_or(0) as u64
 }
 
 /// Table 5.3.

@@ -3,6 +3,7 @@
 use super::context::{Context, repeated};
 use crate::backend::Config;
 use crate::thesis::data::{Data, Frame, STRUCTURES, structure_title};
+use crate::thesis::published::{GT8600, GTX280};
 use crate::thesis::scenes::SceneKey;
 use crate::thesis::table::{Cell, Column, Form, Row, Table};
 
@@ -10,20 +11,41 @@ use crate::thesis::table::{Cell, Column, Form, Row, Table};
 pub const CARD_CONFIGS: [(Config, &str); 3] =
     [(Config::P, "primary rays"), (Config::PS, "with shadow rays"), (Config::PSR, "with shadow and reflected rays")];
 
-/// Table 5.12, 5.13 or 5.14: one per device, of the faster card alone where it is the thesis's.
+/// Whose times a table shows.
+struct Subject<'a> {
+    /// Index of the device.
+    device: usize,
+    /// Index of the published card beside it.
+    card: usize,
+    /// Rays.
+    config: Config,
+    /// Sides of the square images.
+    sides: &'a [u32],
+}
+
+/// Table 5.12, 5.13 or 5.14: one per device, of the card that was chosen where it is the thesis's.
 pub fn at_one_resolution(context: &Context, id: &str) -> Vec<Table> {
-    let (config, words) = CARD_CONFIGS[["5.12", "5.13", "5.14"].iter().position(|i| *i == id).unwrap_or(0)];
-    let devices = if context.data.published { 1 } else { context.data.devices.len() };
+    let number = ["5.12", "5.13", "5.14"].iter().position(|i| *i == id).unwrap_or(0);
+    let (config, words) = CARD_CONFIGS[number];
+    let own = context.card(GTX280);
+    let card = context.options.card.unwrap_or(own);
+    let devices = if context.data.published { card..card + 1 } else { 0..context.data.devices.len() };
     let side = context.options.resolution;
-    (0..devices)
+    devices
         .map(|device| {
-            let title =
-                format!("Frame times at {side}x{side}, {config:?} ({words}), {}", context.data.devices[device].label);
-            let mut table = frame_times(context, id, title, (device, config), &[side]);
+            let title = format!("Frame times at {side}x{side}, {config:?} ({words}), {}", context.label(device));
+            let mut table = frame_times(context, id, title, &Subject { device, card, config, sides: &[side] });
             let elsewhere = context.data.sides(device);
-            if !context.data.published && !elsewhere.contains(&side) && !elsewhere.is_empty() {
+            if !elsewhere.contains(&side) && !elsewhere.is_empty() {
                 let sides: Vec<String> = elsewhere.iter().map(ToString::to_string).collect();
-                table.notes.push(format!("Measured at other resolutions: see --resolution {}.", sides.join(" or ")));
+                let verb = if context.data.published { "Published" } else { "Measured" };
+                table.notes.push(format!("{verb} at other resolutions: see --resolution {}.", sides.join(" or ")));
+            }
+            if context.data.published && card != own {
+                table.notes.push(format!(
+                    "The thesis printed this table of the {GTX280} only; these are rows of its table B.{}.",
+                    number + 4
+                ));
             }
             table
         })
@@ -34,23 +56,41 @@ pub fn at_one_resolution(context: &Context, id: &str) -> Vec<Table> {
 pub fn at_all_resolutions(context: &Context, id: &str) -> Vec<Table> {
     let number = id.strip_prefix("B.").and_then(|n| n.parse::<usize>().ok()).unwrap_or(1) - 1;
     let (config, words) = CARD_CONFIGS[number % 3];
-    (0..context.data.devices.len())
-        .filter(|device| (*device).min(1) == number / 3)
+    let own = context.card(if number < 3 { GTX280 } else { GT8600 });
+    let card = context.options.card.unwrap_or(own);
+    let title = format!("Frame times, {config:?} ({words})");
+    if context.data.published && card != own {
+        let other = format!("table B.{}", (number + 3) % 6 + 1);
+        return vec![context.of_another_card(id, &title, card, &other)];
+    }
+    let number_of_devices = context.data.devices.len();
+    let devices = match (context.data.published, number < 3) {
+        (true, _) => own..own + 1,
+        (false, true) => 0..1,
+        // Without a second device its table stands empty
+        (false, false) => 1..number_of_devices.max(2),
+    };
+    devices
         .map(|device| {
             let mut sides = context.data.sides(device);
-            if context.options.beside {
-                sides.extend(context.published.sides(context.options.card));
+            if context.options.beside || sides.is_empty() {
+                sides.extend(context.published.sides(card));
                 sides.sort_unstable();
                 sides.dedup();
             }
-            let title = format!("Frame times, {config:?} ({words}), {}", context.data.devices[device].label);
-            frame_times(context, id, title, (device, config), &sides)
+            let title = format!("{title}, {}", context.label(device));
+            let mut table = frame_times(context, id, title, &Subject { device, card, config, sides: &sides });
+            if device >= number_of_devices {
+                table.notes.push("Not measured: a second device.".into());
+            }
+            table
         })
         .collect()
 }
 
 /// Rows by scene (and size, if there are several), columns by structure: fastest, slowest, mean frame.
-fn frame_times(context: &Context, id: &str, title: String, (device, config): (usize, Config), sides: &[u32]) -> Table {
+fn frame_times(context: &Context, id: &str, title: String, subject: &Subject) -> Table {
+    let Subject { device, card, config, sides } = *subject;
     type Of = fn(&Frame) -> f64;
     let columns: [(&str, Of); 3] = [("min", |f| f.min_ms), ("max", |f| f.max_ms), ("mean", |f| f.mean_ms)];
     let headings = STRUCTURES
@@ -65,22 +105,21 @@ fn frame_times(context: &Context, id: &str, title: String, (device, config): (us
         for &side in sides {
             let cell = |structure: &str, of: Of| {
                 let ask = |d: &Data, device| Some(of(d.thesis_frame(device, &key, structure, config, side)?));
-                context.device_cell(device, ask)
+                context.device_cell(device, card, ask)
             };
             let cells: Vec<Cell> = STRUCTURES.iter().flat_map(|s| columns.iter().map(|(_, of)| cell(s, *of))).collect();
             let frames = STRUCTURES.iter().filter_map(|s| context.data.thesis_frame(device, &key, s, config, side));
             again += frames.filter(|f| f.repeated).count();
-            let mut keys = vec![key.to_string()];
-            if sides.len() > 1 {
-                keys.push(side.to_string());
-            }
-            let row = Row { keys, cells };
-            let anything =
-                row.is_filled() || row.cells.iter().any(|c| matches!(c, Cell::Number { thesis: Some(_), .. }));
             // Of several sizes only those with a number have a row, and one that stands for the scene's absence
             let first = sides.first() == Some(&side);
-            let scene_absent = !sides.iter().any(|&side| has_any(context, device, &key, config, side));
-            if anything || (first && scene_absent && reflects(&key)) {
+            let scene_absent = !sides.iter().any(|&side| has_any(context, subject, &key, side));
+            let mut keys = vec![key.to_string()];
+            if sides.len() > 1 {
+                keys.push(if scene_absent { String::new() } else { side.to_string() });
+            }
+            let row = Row { keys, cells };
+            if row.is_filled() || row.cells.iter().any(Cell::is_published) || (first && scene_absent && reflects(&key))
+            {
                 rows.push((key.clone(), row));
             }
         }
@@ -88,7 +127,7 @@ fn frame_times(context: &Context, id: &str, title: String, (device, config): (us
     let keys: &[&str] = if sides.len() > 1 { &["scene", "side"] } else { &["scene"] };
     let mut table = context.table(id, title, keys, headings, rows);
     if !context.data.published {
-        notes(context, device, &mut table);
+        notes(context, subject, &mut table);
         table.notes.extend(context.failures(device, config, sides));
         table.notes.extend(repeated(again));
     }
@@ -96,21 +135,30 @@ fn frame_times(context: &Context, id: &str, title: String, (device, config): (us
 }
 
 /// True if a row of this size would have a number in it.
-fn has_any(context: &Context, device: usize, key: &SceneKey, config: Config, side: u32) -> bool {
-    let of = |data: &Data, device| STRUCTURES.iter().any(|s| data.thesis_frame(device, key, s, config, side).is_some());
-    of(context.data, device) || (context.options.beside && of(context.published, context.options.card))
+fn has_any(context: &Context, subject: &Subject, key: &SceneKey, side: u32) -> bool {
+    let of = |data: &Data, device| {
+        STRUCTURES.iter().any(|s| data.thesis_frame(device, key, s, subject.config, side).is_some())
+    };
+    of(context.data, subject.device) || (context.options.beside && of(context.published, subject.card))
 }
 
-/// What to know about a device's times.
-fn notes(context: &Context, device: usize, table: &mut Table) {
-    let measured = &context.data.devices[device];
-    if measured.is_software() {
-        table.notes.push("This device computes on the CPU: its times do not rank structures for a GPU.".into());
-    }
-    if measured.checked {
-        table.notes.push("Kernels had wgpu's bounds checks.".into());
+/// What to know about a device's times, and whose stand beside them.
+fn notes(context: &Context, subject: &Subject, table: &mut Table) {
+    if let Some(measured) = context.data.devices.get(subject.device) {
+        if measured.is_software() {
+            table.notes.push("This device computes on the CPU: its times do not rank structures for a GPU.".into());
+        }
+        if measured.checked {
+            table.notes.push("Kernels had wgpu's bounds checks.".into());
+        }
     }
     if context.options.beside {
-        table.notes.push(format!("2009: {}.", context.published.devices[context.options.card].label));
+        let label = &context.published.devices[subject.card].label;
+        table.notes.push(if table.rows.iter().flat_map(|row| &row.cells).any(Cell::is_published) {
+            format!("2009: {label}.")
+        } else {
+            let sides: Vec<String> = context.published.sides(subject.card).iter().map(ToString::to_string).collect();
+            format!("2009: nothing stands beside these, the thesis has times of the {label} at {}.", sides.join(", "))
+        });
     }
 }

@@ -21,9 +21,15 @@ fn good(arguments: &[&str]) -> String {
 /// Exit code 2 and exactly one line of error, which has these words.
 #[track_caller]
 fn one_error(arguments: &[&str], words: &[&str]) {
+    one_line(arguments, 2, words);
+}
+
+/// This exit code and exactly one line of error, which has these words.
+#[track_caller]
+fn one_line(arguments: &[&str], code: i32, words: &[&str]) {
     let output = rtbench(arguments);
     let text = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {text}");
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {text}");
     assert_eq!(text.lines().filter(|l| l.starts_with("rtbench: error: ")).count(), 1, "{text}");
     assert!(output.stdout.is_empty() && words.iter().all(|w| text.contains(w)) && !text.contains("panicked"), "{text}");
 }
@@ -125,7 +131,13 @@ fn a_document_s_tables_are_replaced_and_held() {
     let text = "# Title\n\n<!-- rtbench:5.12 -->\nold\n<!-- /rtbench:5.12 -->\nbetween\n<!-- rtbench:claims -->\n<!-- /rtbench:claims -->\nend, no newline";
     std::fs::write(&document, text).unwrap();
     let tables = ["tables", a, "--table", "5.12", "--into", path];
-    one_error(&[&tables[..], &["--check"]].concat(), &["README.md", "not up to date"]);
+    // Not being up to date is an answer, no failure.
+    let check = [&tables[..], &["--check"]].concat();
+    one_line(&check, 1, &["README.md: is not up to date (run the same without --check)"]);
+    one_line(&["claims", a, "--into", path, "--check"], 1, &["not up to date"]);
+    assert_eq!(std::fs::read_to_string(&document).unwrap(), text, "a check has changed something");
+    one_error(&["tables", a, "--check"], &["the following required arguments were not provided: --into <FILE>"]);
+    one_error(&["tables", a, "--into", "/nonexistent/README.md", "--check"], &["cannot read"]);
     good(&tables);
     good(&["claims", a, "--into", path]);
     let once = std::fs::read_to_string(&document).unwrap();
@@ -138,7 +150,7 @@ fn a_document_s_tables_are_replaced_and_held() {
     good(&tables);
     good(&["claims", a, "--into", path]);
     assert_eq!(std::fs::read_to_string(&document).unwrap(), once);
-    good(&[&tables[..], &["--check"]].concat());
+    good(&check);
     // All tables: those that have a place.
     good(&["tables", a, "--into", path]);
     one_error(&["tables", a, "--table", "5.1", "--into", path], &["no place for 5.1", "<!-- rtbench:5.1 -->"]);
@@ -159,4 +171,40 @@ fn markers_come_in_pairs() {
     let once = splice(path, text, &block, Need::All).unwrap();
     assert_eq!(once, text.replace("x-->\r\n", "x-->\r\n\r\nnew\r\n\r\n"));
     assert_eq!(splice(path, &once, &block, Need::All).unwrap(), once);
+}
+
+#[test]
+fn a_table_asked_for_by_name_is_printed_also_when_it_is_empty() {
+    let (_folder, a, _) = on_disk();
+    let a = a.to_str().unwrap();
+    let text = good(&["tables", a, "--table", "5.7,B.4", "--beside", "thesis"]);
+    for words in ["Table 5.7: Group shape", "Table 5.7: Effect of a register limit", "Table B.4", "240.96", "45.19"] {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+    assert!(good(&["tables", a, "--table", "B.4", "--rows", "measured"]).contains("Not measured: bunny, "));
+    // All that was measured: no empty tables, they are named on standard error.
+    let output = rtbench(&["tables", a, "--rows", "measured"]);
+    let (text, notes) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(!text.contains("Table B.4") && notes.contains("nothing was measured for: 5.7, 5.3.4, B.4"), "{notes}");
+    // The size and the card follow each other.
+    assert!(good(&["tables", "--card", "8600gt", "--table", "5.12"]).contains("512x512, P (primary rays), 8600GT"));
+    assert!(good(&["tables", "--table", "5.12"]).contains("1024x1024, P (primary rays), GTX280"));
+}
+
+#[test]
+fn structures_are_listed_with_the_values_that_their_options_take() {
+    let text = good(&["structures"]);
+    for line in [
+        "where the short stack lies (default workgroup)\n                     = workgroup, private\n",
+        "entries of the short stack (default 4)\n                     = 1 to 32\n",
+        "direction of shadow rays (default from-light)\n                     = from-light, to-light\n",
+        "= image, four\n",
+        "= off, on\n",
+        "= auto, or 1 to 1048576\n",
+        "= a number from 0.01 to 1000\n",
+        "= 8x8, 8x4, 4x8, 4x4, 16x4, 4x16\n",
+    ] {
+        assert!(text.contains(line), "{line}: {text}");
+    }
+    assert!(text.lines().all(|line| line.chars().count() <= 122), "{text}");
 }

@@ -59,3 +59,38 @@ fn odd_names_and_numbers_do_not_break_a_figure() {
         assert!(figures.iter().all(|f| count(f, "text") > 3));
     }
 }
+
+#[test]
+fn the_fine_sweep_has_only_sizes_of_both_its_lines() {
+    let mut b = Builder::new();
+    for side in [224, 240, 256] {
+        b.frame("bunny", "grid:pattern=four", Config::P, side, 5.0);
+    }
+    for side in [128, 224, 240, 256, 384] {
+        b.frame("bunny", "grid", Config::P, side, 6.0);
+    }
+    let (figures, _) = all(&measured::data(&[b.run])).unwrap();
+    let figure = figures.iter().find(|f| f.id == "5.3").unwrap();
+    let document = roxmltree::Document::parse(&figure.svg).unwrap();
+    let words: Vec<String> = document
+        .descendants()
+        .filter(|n| n.has_tag_name(("http://www.w3.org/2000/svg", "text")))
+        .map(|n| n.text().unwrap_or_default().trim().to_owned())
+        .collect();
+    let has = |word: &str| words.iter().any(|w| w == word);
+    assert!(has("grid, four rays") && has("grid, image") && has("224") && has("256"), "{words:?}");
+    assert!(!has("128") && !has("384"), "{words:?}");
+}
+
+#[test]
+fn bars_stand_at_a_published_size() {
+    let mut b = Builder::new();
+    for scene in ["bunny", "museum"] {
+        b.trio(scene, Config::P, 128, [3.0, 2.0, 1.0]);
+        b.frame(scene, "bvh-stack", Config::P, 128, 1.0);
+        b.trio(scene, Config::P, 256, [3.0, 2.0, 1.0]);
+    }
+    let (figures, _) = all(&measured::data(&[b.run])).unwrap();
+    let bars = figures.iter().find(|f| f.id == "bars").unwrap();
+    assert!(bars.caption.contains("256x256"), "{}", bars.caption);
+}

@@ -3,7 +3,7 @@
 use super::synthetic::{Builder, everything, scene};
 use rtbench::backend::Config;
 use rtbench::thesis::runs::RecordedRun;
-use rtbench::thesis::tables::Options;
+use rtbench::thesis::tables::{Options, Rows};
 use rtbench::thesis::{measured, published, report};
 
 fn page(runs: &[RecordedRun]) -> rtbench::Result<String> {
@@ -75,9 +75,54 @@ fn pictures_are_embedded_and_broken_ones_refused() {
     runs[0].folder = folder.path().into();
     let html = page(&runs).unwrap();
     assert_eq!(html.matches("src=\"data:image/png;base64,iVBOR").count(), 3);
-    assert!(html.contains("alt=\"hall, steps per pixel"));
+    assert!(html.contains("alt=\"hall, steps of bvh-stack"), "the structure of a step map is not named");
     assert_self_contained(&html);
     std::fs::write(pictures.join("bad.png"), "GIF89a").unwrap();
     let error = page(&runs).unwrap_err().to_string();
     assert!(error.contains("bad.png: no PNG") && !error.contains('\n'), "{error}");
+}
+
+#[test]
+fn a_scene_whose_name_begins_another_s_is_shown_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let pictures = folder.path().join("pictures");
+    std::fs::create_dir(&pictures).unwrap();
+    for name in ["conference", "conference-obj"] {
+        for end in ["", "-steps"] {
+            let path = pictures.join(format!("{name}{end}.png"));
+            rtbench::results::picture::write_png(&path, 2, 1, &[255; 8]).unwrap();
+        }
+    }
+    let mut runs = everything();
+    runs[0].folder = folder.path().into();
+    let html = page(&runs).unwrap();
+    for name in ["conference", "conference-obj"] {
+        assert_eq!(html.matches(&format!("<h3>{name}</h3>")).count(), 1, "{name}");
+    }
+    assert_eq!(html.matches("<img ").count(), 4);
+}
+
+#[test]
+fn what_was_not_measured_is_on_the_page() {
+    let runs = [everything().remove(0)];
+    let html = page(&runs).unwrap();
+    assert!(html.contains("what was not measured is empty and named"), "{html}");
+    // Scenes and whole tables without a measurement, with the published numbers.
+    for id in rtbench::thesis::tables::IDS {
+        assert!(html.contains(&format!("<h3>Table {id}: ")), "{id}");
+    }
+    let table = |html: &str, id: &str| {
+        let from = html.find(&format!("<h3>Table {id}: ")).unwrap();
+        html[from..from + html[from..].find("</table>").unwrap()].to_owned()
+    };
+    assert!(table(&html, "5.3").contains("<td class=\"key\">buddha</td>") && table(&html, "5.3").contains("2406.00"));
+    assert!(table(&html, "B.4").contains("45.19"), "the second card's times");
+    assert!(html.contains("Nothing was measured for: 5.7, 5.3.4, B.4, B.5, B.6."));
+    // The words change with the rows.
+    let (data, published) = (measured::data(&runs), published::data());
+    let sources = report::Sources { runs: &runs, data: &data, published: &published };
+    let only = Options { beside: true, rows: Rows::Measured, ..Options::default() };
+    let html = report::write(&sources, &only).unwrap();
+    assert!(html.contains("what was not measured is left out and named") && !html.contains("<h3>Table B.4"));
+    assert!(!table(&html, "5.3").contains("buddha"));
 }
