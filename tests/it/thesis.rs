@@ -5,6 +5,7 @@ mod command; // the program: broken and empty runs, files, splicing
 mod committed; // the runs in git, and what the README shows of them
 mod counts; // grid steps and tests along BART's cameras
 mod figures; // XML, what is drawn and what is not
+mod judging; // exceptions, margins, and what is not judged
 mod published; // every row parses; the memory model against all 27 sizes
 mod report; // one page, nothing from outside, everything escaped
 mod runs; // which scene, device and variant a record belongs to
