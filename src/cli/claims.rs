@@ -10,8 +10,8 @@ use std::path::PathBuf;
 
 /// Judge the thesis's claims by recorded runs
 ///
-/// For each claim: holds, does not hold, undecided (all differences are within the noise) or not measured, with the
-/// numbers. Without a run, the claims are judged by the thesis's own printed numbers. The exit code is 0 whatever the
+/// For each claim: holds, does not hold, undecided (no difference is beyond noise and margin, or only the thesis's own
+/// exceptions are) or not measured, with the numbers. Without a run, the claims are judged by the thesis's own printed numbers. The exit code is 0 whatever the
 /// verdicts are.
 #[derive(Args, Debug)]
 pub struct Arguments {

@@ -4,8 +4,10 @@
 use super::convention::Steps;
 use super::scenes::{SceneKey, ThesisScene};
 use super::variant::Variant;
+use super::workload::Workload;
 use crate::accel::Properties;
 use crate::backend::{Config, DeviceType};
+use std::cmp::Reverse;
 
 /// The structures of the thesis, in its order.
 pub const STRUCTURES: [&str; 3] = ["grid", "kdtree", "bvh"];
@@ -32,7 +34,7 @@ pub struct Data {
     pub frames: Vec<Frame>,
     /// Counts per ray.
     pub counts: Vec<Counts>,
-    /// Built structures.
+    /// Built structures, each once.
     pub built: Vec<Built>,
     /// Measurements without a usable result.
     pub failures: Vec<Failure>,
@@ -51,7 +53,7 @@ pub struct Device {
     pub kind: Option<DeviceType>,
     /// Driver, processor, system and the like, by heading; empty where unknown.
     pub facts: Vec<(&'static str, String)>,
-    /// True if kernels had wgpu's checks in at least one run.
+    /// True if kernels had wgpu's checks in at least one of the rows that are used.
     pub checked: bool,
 }
 
@@ -94,6 +96,8 @@ pub struct Frame {
     pub width: u32,
     /// Rows.
     pub height: u32,
+    /// What its frames show.
+    pub workload: Workload,
     /// Fastest frame.
     pub min_ms: f64,
     /// Slowest frame.
@@ -106,9 +110,13 @@ pub struct Frame {
     pub repeated: bool,
 }
 
-/// Averages per ray of one type.
+/// Averages per ray of one type. A device that rounds in another way counts other numbers, so they belong to one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Counts {
+    /// Index into [`Data::devices`].
+    pub device: usize,
+    /// Rays that were traced; counts of primary rays exist under all three.
+    pub config: Config,
     /// Scene.
     pub scene: SceneKey,
     /// Structure's name.
@@ -163,10 +171,14 @@ pub struct Failure {
     pub what: String,
     /// Structure's name.
     pub structure: String,
+    /// Its options.
+    pub variant: Variant,
     /// Rays.
     pub config: Config,
     /// Pixels per row.
     pub width: u32,
+    /// Rows.
+    pub height: u32,
     /// Why.
     pub message: String,
 }
@@ -188,6 +200,11 @@ pub struct RegisterLimit {
     pub mean_ms: f64,
     /// Speed-up by the limit, as printed.
     pub speedup: Option<i32>,
+}
+
+/// The configuration whose column shows a ray type: the one that adds it (SPEC section 6).
+pub fn adding(ray: usize) -> Config {
+    Config::ALL[ray.min(2)]
 }
 
 impl Counts {
@@ -231,28 +248,39 @@ impl Data {
         self.counts_of(scene, structure, &Variant::of_thesis(scene.thesis(), structure), ray)
     }
 
-    /// Counts of a ray type at the largest resolution.
+    /// Counts of a ray type at the largest resolution, under the configuration that adds it; of several devices those of
+    /// the first.
     pub fn counts_of(&self, scene: &SceneKey, structure: &str, variant: &Variant, ray: usize) -> Option<&Counts> {
-        let wanted = |c: &&Counts| c.is(scene, structure, variant, ray);
-        self.counts.iter().filter(wanted).max_by_key(|c| c.resolution)
+        let wanted = |c: &&Counts| c.config == adding(ray) && c.is(scene, structure, variant, ray);
+        self.counts.iter().filter(wanted).max_by_key(|c| (c.resolution, Reverse(c.device)))
     }
 
-    /// Counts of a ray type at one resolution.
-    pub fn counts_at(
-        &self,
-        scene: &SceneKey,
-        structure: &str,
-        variant: &Variant,
-        ray: usize,
-        resolution: u32,
-    ) -> Option<&Counts> {
-        self.counts.iter().find(|c| c.resolution == resolution && c.is(scene, structure, variant, ray))
+    /// Counts of the same measurement as `other` but with these options.
+    pub fn counts_beside(&self, other: &Counts, variant: &Variant) -> Option<&Counts> {
+        self.counts.iter().find(|c| {
+            (c.device, c.config, c.resolution) == (other.device, other.config, other.resolution)
+                && c.is(&other.scene, &other.structure, variant, other.ray)
+        })
+    }
+
+    /// Counts of a ray type that belong to a frame time.
+    pub fn counts_behind(&self, frame: &Frame, ray: usize) -> Option<&Counts> {
+        self.counts.iter().find(|c| {
+            (c.device, c.config, c.resolution) == (frame.device, frame.config, frame.width)
+                && frame.width == frame.height
+                && c.is(&frame.scene, &frame.structure, &frame.variant, ray)
+        })
+    }
+
+    /// A built structure; a camera path makes no difference to it.
+    pub fn built_of(&self, scene: &SceneKey, structure: &str, variant: &Variant) -> Option<&Built> {
+        let scene = scene.built();
+        self.built.iter().find(|b| b.structure == structure && b.scene == *scene && b.variant == *variant)
     }
 
     /// A built structure, with the thesis's options.
     pub fn thesis_built(&self, scene: &SceneKey, structure: &str) -> Option<&Built> {
-        let variant = Variant::of_thesis(scene.thesis(), structure);
-        self.built.iter().find(|b| b.structure == structure && b.scene == *scene && b.variant == variant)
+        self.built_of(scene, structure, &Variant::of_thesis(scene.built().thesis(), structure))
     }
 
     /// Sides of the square images that were measured on a device, from the smallest.

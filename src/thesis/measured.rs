@@ -5,14 +5,17 @@ use super::data::{Built, Counts, Data, Device, Failure, Frame, Scene};
 use super::runs::RecordedRun;
 use super::scenes::SceneKey;
 use super::variant::Variant;
-use crate::backend::{Config, DeviceInfo, DeviceType};
+use super::workload::{self, Candidate, Workload};
+use crate::backend::{DeviceInfo, DeviceType};
 use crate::results::record::{ConfigurationRecord, CounterSums, Environment, SceneRecord, Status, StructureRecord};
 use crate::results::summary::Row;
 
-/// Everything that runs have measured. Of several measurements of the same, the last complete one counts.
+/// Everything that runs have measured. Of several measurements of the same, the last complete one counts; where frames
+/// differ in what they show, one workload fills the rows ([`workload`]).
 pub fn data(runs: &[RecordedRun]) -> Data {
     let mut data = Data::default();
     let mut identities: Vec<Vec<String>> = Vec::new();
+    let (mut built, mut frames) = (Vec::new(), Vec::new());
     for run in runs {
         let provenance = &run.journal.provenance;
         let identity = identity(&provenance.device, &provenance.environment);
@@ -21,21 +24,32 @@ pub fn data(runs: &[RecordedRun]) -> Data {
             data.devices.push(device(&provenance.device, &provenance.environment));
             identities.len() - 1
         });
-        // The twins have Rust's own checks, always: that says nothing about wgpu's
-        data.devices[device].checked |=
-            provenance.device.checked && provenance.device.device_type != DeviceType::CpuTwin;
         for record in &run.journal.structures {
-            add_scene(&mut data, &record.scene);
-            add_built(&mut data, record, &provenance.environment.cpu);
+            add_scene(&mut data, SceneKey::of(&record.scene), &record.scene);
+            built.push(built_of(record, &provenance.environment.cpu));
         }
         for record in &run.journal.configurations {
-            add_scene(&mut data, &record.scene);
-            add_configuration(&mut data, device, &provenance.device, record);
+            let key = SceneKey::of_row(record);
+            add_scene(&mut data, key.clone(), &record.scene);
+            match frame_of(device, &key, &provenance.device, record) {
+                Some(frame) => frames.push((frame, record)),
+                None => data.failures.push(failure_of(device, key, record)),
+            }
         }
         data.notes.extend(run_notes(run));
     }
     data.scenes.sort_by(|a, b| a.key.cmp(&b.key));
     tell_apart(&mut data.devices);
+    add_built(&mut data, built);
+    let (frames, notes) = workload::of_frames(frames, |device| data.devices[device].label.clone());
+    data.notes.extend(notes);
+    for (frame, record) in frames {
+        data.devices[frame.device].checked |= frame.workload.checked;
+        add_counts(&mut data, &frame, record);
+        add_frame(&mut data, frame);
+    }
+    let notes = workload::unlike_devices(&data);
+    data.notes.extend(notes);
     data
 }
 
@@ -103,8 +117,7 @@ fn run_notes(run: &RecordedRun) -> Vec<String> {
     notes
 }
 
-fn add_scene(data: &mut Data, record: &SceneRecord) {
-    let key = SceneKey::of(record);
+fn add_scene(data: &mut Data, key: SceneKey, record: &SceneRecord) {
     let scene = Scene {
         triangles: record.triangles,
         vertices: record.vertices,
@@ -118,9 +131,10 @@ fn add_scene(data: &mut Data, record: &SceneRecord) {
     }
 }
 
-fn add_built(data: &mut Data, record: &StructureRecord, processor: &str) {
+/// A structure, and of which content of its scene it was built.
+fn built_of(record: &StructureRecord, processor: &str) -> (Built, Workload) {
     let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
-    let mut built = Built {
+    let built = Built {
         scene: SceneKey::of(&record.scene),
         structure: record.structure.clone(),
         variant: Variant::parse(&record.variant),
@@ -132,58 +146,87 @@ fn add_built(data: &mut Data, record: &StructureRecord, processor: &str) {
         allocated_mib: Some(mib(record.memory.structure_bytes + record.memory.geometry_bytes)),
         repeated: false,
     };
-    let same = |b: &&mut Built| b.scene == built.scene && b.structure == built.structure && b.variant == built.variant;
-    match data.built.iter_mut().find(same) {
-        Some(known) => {
-            built.repeated = true;
-            *known = built;
+    (built, Workload { scene: record.scene.hash.clone(), ..Workload::default() })
+}
+
+/// Each structure once, and all of a scene of the same triangles.
+fn add_built(data: &mut Data, rows: Vec<(Built, Workload)>) {
+    let candidates = rows.iter().map(|(built, workload)| Candidate {
+        group: built.scene.clone(),
+        workload,
+        structure: &built.structure,
+        variant: &built.variant,
+    });
+    let candidates: Vec<_> = candidates.collect();
+    let keep: Vec<bool> = workload::choose(&candidates).iter().map(Option::is_none).collect();
+    for ((mut built, _), keep) in rows.into_iter().zip(keep) {
+        if !keep {
+            let note = format!("structures of another content of {} were left out", built.scene);
+            if !data.notes.contains(&note) {
+                data.notes.push(note);
+            }
+            continue;
         }
-        None => data.built.push(built),
+        let same =
+            |b: &&mut Built| b.scene == built.scene && b.structure == built.structure && b.variant == built.variant;
+        match data.built.iter_mut().find(same) {
+            Some(known) => {
+                built.repeated = true;
+                *known = built;
+            }
+            None => data.built.push(built),
+        }
     }
 }
 
-fn add_configuration(data: &mut Data, device: usize, info: &DeviceInfo, record: &ConfigurationRecord) {
-    let scene = SceneKey::of(&record.scene);
+/// A measurement's times, if it has usable ones.
+fn frame_of(device: usize, scene: &SceneKey, info: &DeviceInfo, record: &ConfigurationRecord) -> Option<Frame> {
     let row = Row::new(info, record);
     let usable = record.status == Status::Ok && record.verified;
-    let (true, Some(min_ms), Some(max_ms), Some(mean_ms)) =
-        (usable, row.frame_ms_min, row.frame_ms_max, row.frame_ms_mean)
-    else {
-        let name = if record.variant == "default" { String::new() } else { format!(":{}", record.variant) };
-        let size = format!("{}x{}", record.width, record.height);
-        let message = match record.status {
-            Status::Error => record.message.clone(),
-            Status::Ok if !record.verified => "not verified".into(),
-            Status::Ok => "no times".into(),
-        };
-        data.failures.push(Failure {
-            device,
-            what: format!("{scene} {}{name} {:?} {size}", record.structure, record.config),
-            structure: record.structure.clone(),
-            config: record.config,
-            width: record.width,
-            scene,
-            message,
-        });
-        return;
-    };
-    let mut frame = Frame {
+    let (min_ms, max_ms, mean_ms) = (row.frame_ms_min?, row.frame_ms_max?, row.frame_ms_mean?);
+    // The twins have Rust's own checks, always: that says nothing about wgpu's
+    let checked = info.checked && info.device_type != DeviceType::CpuTwin;
+    usable.then(|| Frame {
         device,
-        scene,
+        scene: scene.clone(),
         structure: record.structure.clone(),
         variant: Variant::parse(&record.variant),
         config: record.config,
         width: record.width,
         height: record.height,
+        workload: Workload::of(record, checked),
         min_ms,
         max_ms,
         mean_ms,
         noise_pct: row.noise_pct,
         repeated: false,
+    })
+}
+
+fn failure_of(device: usize, scene: SceneKey, record: &ConfigurationRecord) -> Failure {
+    let name = if record.variant == "default" { String::new() } else { format!(":{}", record.variant) };
+    let size = format!("{}x{}", record.width, record.height);
+    let message = match record.status {
+        Status::Error => record.message.clone(),
+        Status::Ok if !record.verified => "not verified".into(),
+        Status::Ok => "no times".into(),
     };
-    add_counts(data, &frame, record);
+    Failure {
+        device,
+        what: format!("{scene} {}{name} {:?} {size}", record.structure, record.config),
+        structure: record.structure.clone(),
+        variant: Variant::parse(&record.variant),
+        config: record.config,
+        width: record.width,
+        height: record.height,
+        scene,
+        message,
+    }
+}
+
+fn add_frame(data: &mut Data, mut frame: Frame) {
     let same = |f: &&mut Frame| {
-        (f.device, f.config, f.width, f.height) == (device, frame.config, frame.width, frame.height)
+        (f.device, f.config, f.width, f.height) == (frame.device, frame.config, frame.width, frame.height)
             && f.scene == frame.scene
             && f.structure == frame.structure
             && f.variant == frame.variant
@@ -197,19 +240,27 @@ fn add_configuration(data: &mut Data, device: usize, info: &DeviceInfo, record: 
     }
 }
 
-/// A configuration stands for the ray type that it adds (SPEC section 6); of the same size the last counts. Counts do not depend on the device: that they agree has been verified.
+/// Counts of every ray type that a measurement traced; of the same measurement the last counts.
 fn add_counts(data: &mut Data, frame: &Frame, record: &ConfigurationRecord) {
-    let ray = match record.config {
-        Config::P => 0,
-        Config::PS => 1,
-        Config::PSR => 2,
-    };
-    let Some(sums) = record.counters.as_ref().map(|counters| counters[ray]) else { return };
-    if sums.rays == 0 || frame.width != frame.height {
-        return;
+    let Some(counters) = record.counters.as_ref().filter(|_| frame.width == frame.height) else { return };
+    for (ray, sums) in counters.iter().enumerate().filter(|(_, sums)| sums.rays > 0) {
+        let counts = counts_of(frame, ray, sums);
+        let same = |c: &&mut Counts| {
+            (c.device, c.config, c.ray, c.resolution) == (frame.device, frame.config, ray, frame.width)
+                && (&c.scene, &c.structure, &c.variant) == (&counts.scene, &counts.structure, &counts.variant)
+        };
+        match data.counts.iter_mut().find(same) {
+            Some(known) => *known = counts,
+            None => data.counts.push(counts),
+        }
     }
-    let per_ray = |sum: fn(&CounterSums) -> u64| sum(&sums) as f64 / sums.rays as f64;
-    let counts = Counts {
+}
+
+fn counts_of(frame: &Frame, ray: usize, sums: &CounterSums) -> Counts {
+    let per_ray = |sum: fn(&CounterSums) -> u64| sum(sums) as f64 / sums.rays as f64;
+    Counts {
+        device: frame.device,
+        config: frame.config,
         scene: frame.scene.clone(),
         structure: frame.structure.clone(),
         variant: frame.variant.clone(),
@@ -222,13 +273,5 @@ fn add_counts(data: &mut Data, frame: &Frame, record: &ConfigurationRecord) {
         },
         tests: per_ray(|s| s.tests),
         restarts: (frame.structure == "kdtree").then(|| per_ray(|s| s.restarts)),
-    };
-    let same = |c: &&mut Counts| {
-        (&c.scene, &c.structure, &c.variant) == (&counts.scene, &counts.structure, &counts.variant)
-            && (c.ray, c.resolution) == (ray, counts.resolution)
-    };
-    match data.counts.iter_mut().find(same) {
-        Some(known) => *known = counts,
-        None => data.counts.push(counts),
     }
 }

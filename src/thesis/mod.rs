@@ -16,3 +16,4 @@ pub mod sweeps;
 pub mod table;
 pub mod tables;
 pub mod variant;
+pub mod workload;

@@ -1,9 +1,10 @@
 //! The numbers that the thesis printed, from `results/thesis-2009`, compiled in.
 
 use super::convention::Steps;
-use super::data::{Built, Counts, Data, Device, Frame, RegisterLimit, STRUCTURES, Scene};
+use super::data::{Built, Counts, Data, Device, Frame, RegisterLimit, STRUCTURES, Scene, adding};
 use super::scenes::{SceneKey, ThesisScene};
 use super::variant::Variant;
+use super::workload::Workload;
 use crate::accel::Properties;
 use crate::backend::{Config, RAY_TYPES};
 use serde::Deserialize;
@@ -119,6 +120,7 @@ pub fn data() -> Data {
         config: row.config,
         width: row.resolution,
         height: row.resolution,
+        workload: Workload::default(),
         min_ms: row.min_ms,
         max_ms: row.max_ms,
         mean_ms: row.mean_ms,
@@ -176,15 +178,21 @@ fn scenes() -> Vec<Scene> {
 }
 
 fn counts() -> Vec<Counts> {
-    let count = |row: CountRow| Counts {
-        scene: SceneKey::Thesis(scene(&row.scene)),
-        variant: Variant::of_thesis(Some(scene(&row.scene)), &row.structure),
-        structure: row.structure,
-        ray: RAY_TYPES.iter().position(|name| *name == row.ray_type).unwrap_or(0),
-        resolution: 1024,
-        steps: Steps::Printed(row.steps_per_ray),
-        tests: row.primitive_tests_per_ray,
-        restarts: row.restarts_per_ray,
+    let count = |row: CountRow| {
+        let ray = RAY_TYPES.iter().position(|name| *name == row.ray_type).unwrap_or(0);
+        Counts {
+            // The first device is the card of tables 5.9 to 5.11
+            device: 0,
+            config: adding(ray),
+            scene: SceneKey::Thesis(scene(&row.scene)),
+            variant: Variant::of_thesis(Some(scene(&row.scene)), &row.structure),
+            structure: row.structure,
+            ray,
+            resolution: 1024,
+            steps: Steps::Printed(row.steps_per_ray),
+            tests: row.primitive_tests_per_ray,
+            restarts: row.restarts_per_ray,
+        }
     };
     rows(file!("traversal_counts.csv")).into_iter().map(count).collect()
 }

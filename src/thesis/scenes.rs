@@ -1,6 +1,8 @@
 //! The nine scenes of the thesis, and which of them a recorded scene is, if any.
 
-use crate::results::record::SceneRecord;
+use crate::camera;
+use crate::results::record::{ConfigurationRecord, SceneRecord};
+use crate::scene::{Options, catalogue};
 use std::fmt;
 
 /// A scene of the thesis, in the order of its tables.
@@ -93,17 +95,29 @@ impl ThesisScene {
 /// Which scene a number belongs to.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum SceneKey {
-    /// One of the thesis.
+    /// One of the thesis: its triangles, in the pose that the catalogue gives it.
     Thesis(ThesisScene),
-    /// Any other, by name and number of triangles: also another tessellation of a scene of the thesis.
+    /// Any other, by name and number of triangles: also another tessellation or pose of a scene of the thesis.
     Other(String, u64),
+    /// A scene along a camera path that is not its own: the path's name, and the number of triangles.
+    Along(Box<SceneKey>, String, u64),
 }
 
 impl SceneKey {
-    /// Decides by name, and by counts: a scene of the thesis's name with other triangles is another tessellation of it
-    /// and never fills the thesis's rows. Where the name says nothing, both counts must be the published ones.
+    /// Decides by name, by counts and by options: a scene of the thesis's name with other triangles is another
+    /// tessellation of it, one with other options another pose or picture, and neither ever fills the thesis's rows.
+    /// Where the name says nothing, both counts must be the published ones.
     pub fn of(record: &SceneRecord) -> SceneKey {
         SceneKey::from_counts(&record.name, record.triangles, record.vertices)
+    }
+
+    /// The same of a measurement, which also has a camera path.
+    pub fn of_row(record: &ConfigurationRecord) -> SceneKey {
+        let key = SceneKey::of(&record.scene);
+        if is_own_path(&record.scene.name, &key, record) {
+            return key;
+        }
+        SceneKey::Along(Box::new(key), record.camera_path.name.clone(), record.scene.triangles)
     }
 
     /// The same from a name and counts.
@@ -113,14 +127,18 @@ impl SceneKey {
             Some(scene) => Some(scene).filter(published),
             None => ThesisScene::ALL.into_iter().filter(published).find(|s| s.counts().1 == vertices),
         };
-        found.map_or_else(|| SceneKey::Other(name.to_owned(), triangles), SceneKey::Thesis)
+        match found.map(|scene| (scene, is_as_catalogued(name, scene))) {
+            Some((scene, Ok(()))) => SceneKey::Thesis(scene),
+            Some((_, Err(difference))) => SceneKey::Other(format!("{name}{difference}"), triangles),
+            None => SceneKey::Other(name.to_owned(), triangles),
+        }
     }
 
     /// The scene of the thesis, if it is one.
     pub fn thesis(&self) -> Option<ThesisScene> {
         match self {
             SceneKey::Thesis(scene) => Some(*scene),
-            SceneKey::Other(..) => None,
+            SceneKey::Other(..) | SceneKey::Along(..) => None,
         }
     }
 
@@ -128,23 +146,89 @@ impl SceneKey {
     /// (`conference-obj`).
     pub fn tessellation_of(&self) -> Option<ThesisScene> {
         match self {
-            SceneKey::Thesis(_) => None,
+            SceneKey::Other(_, triangles) => self.akin_to().filter(|s| !s.counts().0.contains(triangles)),
+            SceneKey::Thesis(_) | SceneKey::Along(..) => None,
+        }
+    }
+
+    /// The scene of the thesis that this one is called after: itself, another tessellation, another pose, or another
+    /// camera path through any of these.
+    pub fn akin_to(&self) -> Option<ThesisScene> {
+        match self {
+            SceneKey::Thesis(scene) => Some(*scene),
+            SceneKey::Along(scene, ..) => scene.akin_to(),
             SceneKey::Other(name, _) => {
-                ThesisScene::named(name).or_else(|| ThesisScene::named(name.split_once('-')?.0))
+                let word = name.split([':', ' ']).next().unwrap_or(name);
+                ThesisScene::named(word).or_else(|| ThesisScene::named(word.split_once('-')?.0))
             }
+        }
+    }
+
+    /// The scene that structures are built of: a camera path changes none of them.
+    pub fn built(&self) -> &SceneKey {
+        match self {
+            SceneKey::Along(scene, ..) => scene.built(),
+            other => other,
+        }
+    }
+
+    /// Name without the number of triangles.
+    fn name(&self) -> String {
+        match self {
+            SceneKey::Thesis(scene) => scene.name().to_owned(),
+            SceneKey::Other(name, _) => {
+                // A built-in scene's size stands in the brackets anyway
+                let short = name.split_once(":triangles=").filter(|(_, rest)| !rest.contains(','));
+                short.map_or(name.as_str(), |(short, _)| short).to_owned()
+            }
+            SceneKey::Along(scene, path, _) => format!("{} along {path}", scene.name()),
         }
     }
 }
 
+/// Is a scene read as the catalogue reads it, so that it shows what the thesis measured? A name of the catalogue has its
+/// options already, and those behind it come on top; a file has only those behind its name. Otherwise, what to put
+/// behind the name so that it says what differs.
+fn is_as_catalogued(name: &str, scene: ThesisScene) -> Result<(), String> {
+    let (bare, settings) = name.split_once(':').unwrap_or((name, ""));
+    let catalogued = catalogue::find(scene.name()).map_or("", |entry| entry.options.as_str());
+    let all = if bare == scene.name() { format!("{catalogued},{settings}") } else { settings.to_owned() };
+    // Where includes may lie changes nothing that is seen
+    let read = |settings: &str| Options::parse(name, settings).map(|o| Options { outside: false, ..o }).ok();
+    match (read(&all), read(catalogued)) {
+        (Some(this), Some(thesis)) if this == thesis => Ok(()),
+        _ if settings.is_empty() => Err(format!(" without {catalogued}")),
+        _ => Err(String::new()),
+    }
+}
+
+/// Is a row's path the one that its scene is measured along if the user names none (`CameraPath::for_scene`)? The camera
+/// of the scene's file is called after the scene, and some scenes have a path that was made for them; only scenes with
+/// neither are circled. A record without a path's name is taken as it stands.
+fn is_own_path(name: &str, key: &SceneKey, record: &ConfigurationRecord) -> bool {
+    let path = record.camera_path.name.as_str();
+    let bare = name.split(':').next().unwrap_or(name);
+    if path.is_empty() || path == bare {
+        return true;
+    }
+    if let Some(own) = catalogue::find(bare).and_then(|entry| entry.camera_path.as_deref()) {
+        return path == own;
+    }
+    // The files of BART bring their cameras
+    let has_own = match key.akin_to() {
+        Some(scene) => matches!(scene, Robots | Museum | Kitchen),
+        None => camera::names().contains(&bare),
+    };
+    !has_own && path == if record.config.shadows() { "light-orbit" } else { "orbit" }
+}
+
 impl fmt::Display for SceneKey {
-    /// A scene that is not the thesis's has its number of triangles with it, so that nobody takes it for the thesis's.
+    /// What is not the thesis's has its number of triangles with it, so that nobody takes it for the thesis's.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             SceneKey::Thesis(scene) => f.write_str(scene.name()),
-            SceneKey::Other(name, triangles) => {
-                // A built-in scene's size stands in the brackets anyway
-                let short = name.split_once(":triangles=").filter(|(_, rest)| !rest.contains(','));
-                write!(f, "{} ({triangles})", short.map_or(name.as_str(), |(short, _)| short))
+            SceneKey::Other(_, triangles) | SceneKey::Along(_, _, triangles) => {
+                write!(f, "{} ({triangles})", self.name())
             }
         }
     }

@@ -20,8 +20,7 @@ pub struct Point<'a> {
 /// them (of equals the largest). Empty if fewer than two.
 pub fn grid_sweep<'a>(data: &'a Data, device: usize, scene: &SceneKey, config: Config) -> Vec<Point<'a>> {
     let cells = |variant: &Variant| {
-        let built = data.built.iter().find(|b| b.structure == "grid" && b.scene == *scene && b.variant == *variant)?;
-        let p = &built.properties;
+        let p = &data.built_of(scene, "grid", variant)?.properties;
         Some(p.cells_x?.min(p.cells_y?).min(p.cells_z?))
     };
     // Only the resolution may differ from the defaults

@@ -6,6 +6,7 @@ mod committed; // the runs in git, and what the README shows of them
 mod counts; // grid steps and tests along BART's cameras
 mod empty; // tables without a measurement, cards and sizes that were chosen
 mod figures; // XML, what is drawn and what is not
+mod judging; // exceptions, margins, and what is not judged
 mod latex; // what a longtable has to have
 mod published; // every row parses; the memory model against all 27 sizes
 mod report; // one page, nothing from outside, everything escaped

@@ -31,8 +31,7 @@ pub fn is_uniform(data: &Data, scene: &SceneKey) -> Option<bool> {
     if let Some(scene) = scene.thesis() {
         return Some(scene.is_object());
     }
-    let by_rule = |b: &&Built| b.scene == *scene && b.structure == "grid" && b.variant.is_default();
-    let fullest = data.built.iter().find(by_rule)?.properties.max_cell_triangles?;
+    let fullest = data.built_of(scene, "grid", &Variant::default())?.properties.max_cell_triangles?;
     Some(crowding(fullest, data.scene(scene)?.triangles) < UNIFORM_CROWDING)
 }
 
@@ -52,13 +51,19 @@ pub fn ms(value: f64) -> String {
     format!("{} ms", Form::Time.write(value))
 }
 
-/// Grid, kd-tree and BVH of every scene that has all three.
+/// Grid, kd-tree and BVH of every scene that has all three. A camera path makes no other scene of it.
 fn built(data: &Data) -> Vec<(&SceneKey, [&Built; 3])> {
     let of = |scene: &'_ SceneKey| {
         let [grid, kdtree, bvh] = STRUCTURES.map(|s| data.thesis_built(scene, s));
         Some([grid?, kdtree?, bvh?])
     };
-    data.scenes.iter().filter_map(|s| Some((&s.key, of(&s.key)?))).collect()
+    let scenes = data.scenes.iter().map(|s| &s.key).filter(|key| key.built() == *key);
+    scenes.filter_map(|key| Some((key, of(key)?))).collect()
+}
+
+/// True if build times can be compared: the same number of threads of the same processor.
+fn alike(built: &[&Built; 3]) -> bool {
+    built.iter().all(|b| (b.threads, &b.processor) == (built[0].threads, &built[0].processor))
 }
 
 /// Claim 1.
@@ -66,17 +71,38 @@ pub fn build_times(data: &Data) -> Vec<Case> {
     let case = |(scene, built): (&SceneKey, [&Built; 3])| {
         let [grid, kdtree, bvh] = built.map(|b| b.build_ms);
         let (grid, kdtree, bvh) = (grid?, kdtree?, bvh?);
-        let time = |ms| Uncertain::once(data, ms);
+        let time = Uncertain::build;
         let outcome = all([less(time(grid), time(bvh)), less(time(bvh), time(kdtree))]);
-        let threads = built.map(|b| b.threads.unwrap_or(1));
-        let on = if threads == [1; 3] {
-            String::new()
-        } else {
-            format!(" (threads: {}, {}, {})", threads[0], threads[2], threads[1])
+        let on = match built[0].threads {
+            None | Some(1) => String::new(),
+            Some(threads) => format!(" ({threads} threads)"),
         };
         Some(Case::new(scene, "", outcome, format!("grid {}, BVH {}, kd-tree {}{on}", ms(grid), ms(bvh), ms(kdtree))))
     };
-    built(data).into_iter().filter_map(case).collect()
+    built(data).into_iter().filter(|(_, built)| alike(built)).filter_map(case).collect()
+}
+
+/// Builds that claim 1 does not compare.
+pub fn unlike_builds(data: &Data) -> Vec<String> {
+    let mut reasons: Vec<(String, Vec<String>)> = Vec::new();
+    for (scene, built) in built(data).into_iter().filter(|(_, built)| !alike(built)) {
+        let [grid, kdtree, bvh] = built.map(|b| b.threads.unwrap_or(1));
+        let reason = if [kdtree, bvh] == [grid; 2] {
+            "the structures were built by unlike processors".to_owned()
+        } else {
+            let [grid, kdtree, bvh] = [grid, kdtree, bvh].map(threads);
+            format!("built on {grid} (grid), {bvh} (BVH) and {kdtree} (kd-tree); sweep with --threads 1")
+        };
+        match reasons.iter_mut().find(|(known, _)| *known == reason) {
+            Some((_, scenes)) => scenes.push(scene.to_string()),
+            None => reasons.push((reason, vec![scene.to_string()])),
+        }
+    }
+    reasons.into_iter().map(|(reason, scenes)| format!("Not measured on {}: {reason}", scenes.join(", "))).collect()
+}
+
+fn threads(number: usize) -> String {
+    if number == 1 { "1 thread".into() } else { format!("{number} threads") }
 }
 
 /// Claim 2.
@@ -150,7 +176,9 @@ fn gains(data: &Data, device: usize) -> Vec<(&SceneKey, Config, Gains)> {
     for scene in data.scenes.iter().map(|s| &s.key) {
         for config in Config::ALL {
             let trios = trios(data, device, scene, config);
-            let (Some(small), Some(large)) = (trios.first(), trios.last()) else { continue };
+            let Some(large) = trios.last() else { continue };
+            // The smallest image of the same frames
+            let Some(small) = trios.iter().find(|trio| trio[0].workload == large[0].workload) else { continue };
             if small[0].width == large[0].width {
                 continue;
             }
@@ -158,7 +186,7 @@ fn gains(data: &Data, device: usize) -> Vec<(&SceneKey, Config, Gains)> {
                 let [a, b] = [small[index], large[index]].map(|f| Uncertain::frame(data, f));
                 let pixels = |f: &Frame| f64::from(f.width) * f64::from(f.height);
                 let value = (a.value / pixels(small[index])) / (b.value / pixels(large[index]));
-                Uncertain { value, noise: a.noise + b.noise }
+                Uncertain { value, noise: a.noise + b.noise, margin: a.margin.max(b.margin) }
             };
             all.push((scene, config, ([gain(0), gain(1), gain(2)], small[0].width, large[0].width)));
         }

@@ -1,22 +1,27 @@
 //! The claims of the thesis (SPEC section 10), judged by measurements.
 //!
 //! A claim is about *cases*: a scene, often with a ray configuration or a structure. Each case agrees, contradicts, or is
-//! undecided because the difference is smaller than the noise. The claim holds if at least one case agrees and none
-//! contradicts; cases in which the thesis's own numbers contradict its claim as well do not count against it, and are
-//! named. Without any case it is not measured, which is a verdict of its own and never a "holds".
+//! undecided because the difference is smaller than the noise and a stated margin. The rule (METHODOLOGY.md, "How claims
+//! are judged") is the same for runs and for the numbers that the thesis printed. Cases that contradict, as the thesis's own
+//! numbers do, are its exceptions: they are named and do not count against the claim. It does not hold if any other case
+//! contradicts; it holds if more cases agree than are exceptions; otherwise it is undecided. Without
+//! any case it is not measured, which is a verdict of its own and never a "holds".
 
 mod cases;
 mod compare;
 mod list;
+mod occupancy;
 mod options;
 mod render;
+mod resolution;
 
 pub use cases::{MIRRORS, UNIFORM_CROWDING, crowding};
-pub use compare::{Outcome, UNKNOWN_NOISE_PCT};
-pub use options::{FAR, NEAR, WORTH_PCT};
+pub use compare::{BUILD_MARGIN_PCT, Outcome, TIME_MARGIN_PCT, UNKNOWN_NOISE_PCT};
+pub use occupancy::ABOUT_20_PCT;
 pub use render::{Form, details, sign, summary, totals, write};
+pub use resolution::{FAR, NEAR};
 
-use super::data::Data;
+use super::data::{Data, Failure};
 use super::scenes::SceneKey;
 use list::{CLAIMS, Claim};
 use serde::Serialize;
@@ -25,11 +30,11 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// At least one case agrees, none contradicts (but for the thesis's own exceptions).
+    /// No case contradicts but for the thesis's own exceptions, and more cases agree than are exceptions.
     Holds,
-    /// A case contradicts.
+    /// A case contradicts that is none of the thesis's own exceptions.
     DoesNotHold,
-    /// There are cases, and in all of them the difference is smaller than the noise.
+    /// There are cases, and none of the above.
     Undecided,
     /// There is no case.
     NotMeasured,
@@ -118,7 +123,7 @@ pub struct Finding {
     pub agreeing: usize,
     /// Cases that contradict.
     pub contradicting: usize,
-    /// Cases within the noise.
+    /// Cases within the margin.
     pub undecided: usize,
     /// Contradicting cases in which the thesis's own numbers contradict as well.
     pub exceptions: Vec<String>,
@@ -126,13 +131,17 @@ pub struct Finding {
     pub thesis: Option<(usize, usize)>,
     /// All cases.
     pub cases: Vec<Case>,
+    /// Measurements that belong to it and gave no usable result, with the reason: what the verdict does not rest on.
+    pub failed: Vec<String>,
+    /// What was measured and is not judged, with the reason.
+    pub left_out: Vec<String>,
     /// What would have to be measured; said where nothing was.
     pub needs: &'static str,
     /// What to beware of.
     pub warnings: Vec<String>,
 }
 
-/// Judges every claim; those about frame times once per device. `card` is the published card for comparison.
+/// Judges every claim; those about frame times, or counts in their place, once per device. `card` is the published card for comparison.
 pub fn judge(data: &Data, published: &Data, card: usize) -> Vec<Finding> {
     let mut findings = Vec::new();
     for claim in &CLAIMS {
@@ -151,7 +160,7 @@ fn finding(claim: &Claim, data: &Data, device: usize, thesis: &[Case]) -> Findin
             warnings.push(
                 "Judged by steps and triangle tests per ray: this device's times say nothing about a GPU's.".to_owned(),
             );
-            (Basis::Counts, by_counts(data))
+            (Basis::Counts, by_counts(data, device))
         }
         None => (claim.basis, (claim.cases)(data, device)),
     };
@@ -165,18 +174,15 @@ fn finding(claim: &Claim, data: &Data, device: usize, thesis: &[Case]) -> Findin
     let count = |outcome| cases.iter().filter(|c| c.outcome == outcome).count();
     let (agreeing, contradicting, undecided) =
         (count(Outcome::Agrees), count(Outcome::Contradicts), count(Outcome::Undecided));
-    // Printed numbers are judged as they stand: there is nobody to excuse them
     let excused = |case: &&Case| {
-        !data.published
-            && thesis.iter().any(|t| (&t.scene, &t.what, t.outcome) == (&case.scene, &case.what, Outcome::Contradicts))
+        thesis.iter().any(|t| (&t.scene, &t.what, t.outcome) == (&case.scene, &case.what, Outcome::Contradicts))
     };
     let against = cases.iter().filter(|c| c.outcome == Outcome::Contradicts);
     let exceptions: Vec<String> = against.filter(excused).map(Case::name).collect();
-    let verdict = match (agreeing, contradicting - exceptions.len(), undecided) {
+    let verdict = match (agreeing, contradicting - exceptions.len()) {
         _ if cases.is_empty() => Verdict::NotMeasured,
-        (_, 1.., _) => Verdict::DoesNotHold,
-        (1.., 0, _) => Verdict::Holds,
-        (0, 0, _) if contradicting > 0 => Verdict::DoesNotHold,
+        (_, 1..) => Verdict::DoesNotHold,
+        (1.., 0) if agreeing > exceptions.len() => Verdict::Holds,
         _ => Verdict::Undecided,
     };
     let mut scenes: Vec<&str> =
@@ -199,7 +205,23 @@ fn finding(claim: &Claim, data: &Data, device: usize, thesis: &[Case]) -> Findin
         exceptions,
         thesis: (decided > 0 && !data.published).then_some((thesis_agrees, decided)),
         cases,
+        failed: if claim.basis == Basis::FrameTimes { failed(claim, data, device) } else { Vec::new() },
+        left_out: (claim.left_out)(data),
         needs: claim.needs,
         warnings,
     }
+}
+
+/// What was tried on a device for a claim, and never gave a result.
+fn failed(claim: &Claim, data: &Data, device: usize) -> Vec<String> {
+    let later = |failure: &Failure| {
+        data.frames.iter().any(|f| {
+            (f.device, f.config, f.width, f.height) == (device, failure.config, failure.width, failure.height)
+                && f.scene == failure.scene
+                && f.structure == failure.structure
+                && f.variant == failure.variant
+        })
+    };
+    let of_claim = |f: &&Failure| f.device == device && claim.subject.has(data, f) && !later(f);
+    data.failures.iter().filter(of_claim).map(|f| format!("{} ({})", f.what, f.message)).collect()
 }

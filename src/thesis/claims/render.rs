@@ -33,6 +33,9 @@ pub fn totals(findings: &[Finding]) -> String {
     words.collect::<Vec<_>>().join(", ")
 }
 
+/// Most failed measurements that are spelt out.
+const MAX_FAILED: usize = 4;
+
 /// Columns left of a claim's statement.
 const STATEMENT: &str = "                       ";
 
@@ -53,7 +56,7 @@ fn text(findings: &[Finding], whose: &str) -> String {
             text += &wrap(&format!("{} {}: {}", sign(case.outcome), case.name(), case.numbers), "         ");
         }
     }
-    text + "\nBefore a case: + agrees, - contradicts, ? within the noise.\n"
+    text + "\nBefore a case: + agrees, - contradicts, ? undecided: the difference is within noise and margin.\n"
 }
 
 /// A case's outcome in one character.
@@ -79,8 +82,7 @@ pub fn details(finding: &Finding) -> Vec<String> {
         lines.push(format!("Nothing was measured that could decide it{device}. It needs {}.", finding.needs));
     } else {
         let device = if finding.device.is_empty() { String::new() } else { format!(" on {}", finding.device) };
-        let noise =
-            if finding.undecided > 0 { format!(", {} within the noise", finding.undecided) } else { String::new() };
+        let noise = if finding.undecided > 0 { format!(", {} undecided", finding.undecided) } else { String::new() };
         let scenes = if finding.scenes == 1 { "1 scene".into() } else { format!("{} scenes", finding.scenes) };
         lines.push(format!(
             "By {}{device}: {} of {} cases agree{noise}; rests on {scenes}.",
@@ -91,6 +93,13 @@ pub fn details(finding: &Finding) -> Vec<String> {
         if !finding.exceptions.is_empty() {
             lines.push(format!("Except, as in the thesis's own numbers: {}.", finding.exceptions.join(", ")));
         }
+    }
+    lines.extend(finding.left_out.iter().map(|words| format!("{words}.")));
+    if !finding.failed.is_empty() {
+        let shown = &finding.failed[..finding.failed.len().min(MAX_FAILED)];
+        let more = finding.failed.len() - shown.len();
+        let more = if more > 0 { format!("; and {more} more") } else { String::new() };
+        lines.push(format!("Failed, so that the claim rests on less: {}{more}.", shown.join("; ")));
     }
     if let Some((agreeing, decided)) = finding.thesis {
         lines.push(format!("The thesis's own numbers: {agreeing} of {decided} cases agree."));

@@ -30,7 +30,7 @@ pub fn write(findings: &[Finding]) -> String {
         }
         html += "</div>\n";
     }
-    html + "<p class=\"note\">Before a case: + agrees, - contradicts, ? within the noise.</p>\n"
+    html + "<p class=\"note\">Before a case: + agrees, - contradicts, ? undecided: within noise and margin.</p>\n"
 }
 
 fn number(cases: usize) -> String {

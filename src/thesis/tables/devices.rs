@@ -85,7 +85,8 @@ fn pair(data: &Data, other: usize) -> Option<Table> {
         for (config, _) in CARD_CONFIGS {
             let quotient = |structure: &str, side| {
                 let time = |device| data.thesis_frame(device, &scene.key, structure, config, side);
-                Some(time(other)?.mean_ms / time(0)?.mean_ms)
+                let (first, second) = (time(0)?, time(other)?);
+                (first.workload == second.workload).then(|| second.mean_ms / first.mean_ms)
             };
             let common = |side: &u32| STRUCTURES.iter().any(|s| quotient(s, *side).is_some());
             let Some(side) = data.sides(0).into_iter().rev().find(common) else { continue };

@@ -9,11 +9,11 @@ fn findings(builder: Builder) -> Vec<Finding> {
     judge(&measured::data(&[builder.run]), &published::data(), 0)
 }
 
-fn verdict(builder: Builder, claim: &str) -> Verdict {
+pub fn verdict(builder: Builder, claim: &str) -> Verdict {
     finding(builder, claim).verdict
 }
 
-fn finding(builder: Builder, claim: &str) -> Finding {
+pub fn finding(builder: Builder, claim: &str) -> Finding {
     findings(builder).into_iter().find(|f| f.claim == claim).unwrap()
 }
 
@@ -25,7 +25,7 @@ fn nothing() -> Builder {
 }
 
 /// A run as `fill` makes it.
-fn with(fill: impl Fn(&mut Builder)) -> Builder {
+pub fn with(fill: impl Fn(&mut Builder)) -> Builder {
     let mut b = nothing();
     fill(&mut b);
     b
@@ -39,14 +39,14 @@ fn nothing_measured_is_its_own_verdict() {
     for form in [Form::Text, Form::Markdown, Form::Json] {
         let text = write(&all, "1 run", form).to_lowercase();
         assert!(text.contains("not measured") || text.contains("not-measured"), "{text}");
-        assert!(!text.replace("threads fit", "").contains("holds"), "{text}");
+        assert!(!text.contains("holds"), "{text}");
     }
 }
 
 /// A claim, data of which it holds, data of which it does not, and data that does not decide it.
 type Trial = (&'static str, fn(&mut Builder), fn(&mut Builder), Option<fn(&mut Builder)>);
 
-fn build_times(b: &mut Builder, [grid, bvh, kdtree]: [f64; 3]) {
+pub fn build_times(b: &mut Builder, [grid, bvh, kdtree]: [f64; 3]) {
     b.built("museum", "grid", grid, 3.0, 9);
     b.built("museum", "bvh", bvh, 1.0, 0);
     b.built("museum", "kdtree", kdtree, 2.0, 0);
@@ -64,7 +64,7 @@ fn falls(b: &mut Builder, factors: [f64; 3]) {
     b.trio("museum", Config::PS, 512, factors.map(|f| 40.0 / f));
 }
 
-fn pair(b: &mut Builder, scene: &str, structure: &str, option: &str, config: Config, times: [f64; 2]) {
+pub fn pair(b: &mut Builder, scene: &str, structure: &str, option: &str, config: Config, times: [f64; 2]) {
     let base = if (scene, structure) == ("robots", "grid") { "grid:x=128" } else { structure };
     let separator = if base.contains(':') { "," } else { ":" };
     b.frame(scene, base, config, 256, times[0]);
@@ -147,7 +147,7 @@ const TRIALS: [Trial; 15] = [
     ),
     (
         "10a",
-        |b| sweep(b, "bunny", [12.0, 10.0, 9.5]),
+        |b| sweep(b, "bunny", [12.0, 10.0, 10.5]),
         |b| sweep(b, "bunny", [12.0, 10.0, 5.0]),
         Some(|b| sweep(b, "bunny", [12.0, 11.5, 10.0])),
     ),
@@ -190,8 +190,8 @@ const TRIALS: [Trial; 15] = [
     (
         "12",
         |b| pair(b, "museum", "kdtree", "memory=private", Config::PSR, [10.0, 8.0]),
-        |b| pair(b, "museum", "kdtree", "group=16x4", Config::PSR, [10.0, 9.8]),
-        Some(|b| pair(b, "museum", "kdtree", "group=16x4", Config::PSR, [10.0, 8.9])),
+        |b| pair(b, "museum", "kdtree", "memory=private", Config::PSR, [10.0, 12.0]),
+        Some(|b| pair(b, "museum", "kdtree", "memory=private", Config::PSR, [10.0, 9.2])),
     ),
 ];
 
@@ -209,24 +209,6 @@ fn every_claim_holds_or_not_as_the_data_says() {
             assert_eq!(verdict(noisy, claim), Verdict::Undecided, "{claim}, noisy data");
         }
     }
-}
-
-#[test]
-fn the_thesis_s_own_exceptions_are_named_and_nothing_else_is_excused() {
-    // Published: the kd-tree beats the BVH on robots under P. Ours does so too: an exception, not a refutation.
-    let measured = |museum: [f64; 3]| {
-        with(|b| {
-            b.trio("robots", Config::P, 256, [3.0, 1.0, 2.0]);
-            b.trio("museum", Config::P, 256, museum);
-        })
-    };
-    let f = finding(measured([3.0, 2.0, 1.0]), "3");
-    assert_eq!((f.verdict, f.exceptions.as_slice(), f.scenes), (Verdict::Holds, &["robots P".to_owned()][..], 2));
-    assert_eq!((f.agreeing, f.contradicting, f.thesis), (1, 1, Some((8, 12))));
-    let f = finding(measured([3.0, 1.0, 2.0]), "3");
-    assert_eq!((f.verdict, f.exceptions.len()), (Verdict::DoesNotHold, 1));
-    // Exceptions alone confirm nothing.
-    assert_eq!(verdict(with(|b| b.trio("robots", Config::P, 256, [3.0, 1.0, 2.0])), "3"), Verdict::DoesNotHold);
 }
 
 #[test]
@@ -293,32 +275,10 @@ fn on_a_software_device_counts_decide_where_they_can() {
 }
 
 #[test]
-fn error_rows_decide_nothing() {
-    let mut b = with(|b| b.trio("museum", Config::P, 256, [3.0, 2.0, 1.0]));
-    for record in &mut b.run.journal.configurations {
-        record.verified = false;
-    }
-    assert_eq!(verdict(b, "3"), Verdict::NotMeasured);
-}
-
-#[test]
 fn devices_are_judged_apart() {
     let all = judge(&measured::data(&everything()), &published::data(), 0);
     let of = |claim: &str| all.iter().filter(|f| f.claim == claim).map(|f| f.device.as_str()).collect::<Vec<_>>();
     assert_eq!((of("1"), of("5")), (vec![""], vec!["Fast GPU", "Slow GPU"]));
-}
-
-#[test]
-fn the_printed_numbers_are_judged_as_strictly() {
-    let data = published::data();
-    let all = judge(&data, &data, 0);
-    let of = |claim: &str| all.iter().find(|f| f.claim == claim).unwrap();
-    // 1 and 6a by all numbers; 2 fails on the bunny, as table 5.4 and 5.5 have it.
-    assert_eq!((of("1").verdict, of("1").agreeing), (Verdict::Holds, 9));
-    assert_eq!((of("2").verdict, of("2").agreeing, of("2").contradicting), (Verdict::DoesNotHold, 8, 1));
-    assert_eq!((of("6a").verdict, of("6a").agreeing), (Verdict::Holds, 23));
-    assert_eq!(of("7").verdict, Verdict::NotMeasured);
-    assert!(all.iter().all(|f| f.exceptions.is_empty()));
 }
 
 #[test]
