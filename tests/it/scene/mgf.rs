@@ -20,7 +20,7 @@ fn every_shape_gives_the_triangles_of_the_formats_library() {
         ("f a b \\\n  c d", 2, 4),
         ("f a b\\\nc d", 2, 4),
         ("f a b \\\r\n\\\r\n\\\r\nc d\r\n", 2, 4),
-        ("f\\\n a b c \\\n\nf b d c", 2, 4),
+        ("f\\\n a b c \\\n\nf b d c", 2, 6),
         ("# a comment \\\nf this is still the comment\nf a b c", 1, 3),
         ("f a b c \\", 1, 3),
         ("v x\\y =\np 0\\\n 5\\\n\\\n 0\nf a b x\\y", 1, 3),
