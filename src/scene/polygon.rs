@@ -6,7 +6,7 @@ use earcut::Earcut;
 use glam::{DVec2, DVec3};
 
 /// Larger polygons are not examined: ear clipping may take the square of the number of corners.
-const MAX_CORNERS: usize = 4096;
+pub const MAX_CORNERS: usize = 4096;
 
 /// What may be cut in all, as the sum of the squares of numbers of corners: so much in any case, and so much more per byte of
 /// the file. (A corner needs some bytes: polygons of a few hundred corners may be as many as there is room for.)

@@ -86,9 +86,10 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     };
     reader.file(path, &bytes)?;
     let first_key = || reader.keys.values().filter_map(Keyframes::first_time).min_by(f64::total_cmp);
+    let begin = reader.animation.map(|a| a.start).or_else(first_key);
+    let time = options.time.or(begin);
     // Without any key, the earliest time there is stands for the first key of animated triangles as well
-    let begin = reader.animation.map(|a| a.start).or_else(first_key).unwrap_or(f64::MIN);
-    reader.time = options.time.unwrap_or(begin);
+    reader.time = time.unwrap_or(f64::MIN);
     reader.pass = Pass::Mesh;
     reader.detail = 0;
     reader.includes.rewind();
@@ -102,7 +103,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
             Error::file(path, None, format!("there are no keyframes `{name}`"), mend)
         })?),
     };
-    let camera = camera::camera(reader.view.as_ref(), keys, reader.animation.as_ref(), reader.time);
+    let camera = camera::camera(reader.view.as_ref(), keys, reader.animation.as_ref(), time.unwrap_or(0.0));
     Ok(Scene { background: reader.background, camera, ..reader.mesh.finish() })
 }
 

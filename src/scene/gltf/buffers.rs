@@ -2,11 +2,13 @@
 
 use super::Fault;
 use crate::scene::Options;
+use crate::scene::text::Home;
 use base64::Engine;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use gltf::Document;
 use gltf::buffer::{Source, View};
 use std::borrow::Cow;
+use std::cell::LazyCell;
 use std::collections::HashMap;
 use std::path::{Component, Path, PathBuf};
 
@@ -26,6 +28,7 @@ impl<'a> Buffers<'a> {
     pub fn load(path: &Path, document: &Document, blob: Option<&'a [u8]>, options: &Options) -> Result<Self, Fault> {
         let mut all = Buffers { buffers: Vec::new(), contents: Vec::new(), beside: 0 };
         let mut files: HashMap<PathBuf, usize> = HashMap::new();
+        let home = LazyCell::new(|| Home::of(path));
         for buffer in document.buffers() {
             let content = match buffer.source() {
                 Source::Bin => match blob {
@@ -35,7 +38,7 @@ impl<'a> Buffers<'a> {
                 Source::Uri(uri) => match uri.strip_prefix("data:") {
                     Some(data) => all.add(decode(data)?.into()),
                     None => {
-                        let (shown, file) = place(path, uri, options)?;
+                        let (shown, file) = place(path, uri, options, &home)?;
                         match files.get(&file) {
                             Some(&content) => content,
                             None => {
@@ -97,18 +100,18 @@ fn decode(data: &str) -> Result<Vec<u8>, Fault> {
 }
 
 /// A file beside the scene: its name for messages, and where it is.
-fn place(path: &Path, uri: &str, options: &Options) -> Result<(String, PathBuf), Fault> {
+fn place(path: &Path, uri: &str, options: &Options, home: &Home) -> Result<(String, PathBuf), Fault> {
     let name = percent_encoding::percent_decode_str(uri).decode_utf8_lossy();
     let shown: String = name.chars().filter(|c| !c.is_control()).take(80).collect();
     if name.contains("://") {
         return Err((format!("buffer {shown} is an address"), "download it, and name the file"));
     }
     let leaves = Path::new(&*name).components().any(|c| !matches!(c, Component::Normal(_) | Component::CurDir));
-    if leaves && !options.outside {
+    let file = path.parent().unwrap_or(Path::new("")).join(&*name);
+    if !options.outside && (leaves || !home.holds(&file)) {
         let problem = format!("buffer {shown} lies outside of the scene's folder");
         return Err((problem, "allow it with the option outside=yes"));
     }
-    let file = path.parent().unwrap_or(Path::new("")).join(&*name);
     let file = file.canonicalize().unwrap_or(file);
     Ok((shown, file))
 }
@@ -116,5 +119,15 @@ fn place(path: &Path, uri: &str, options: &Options) -> Result<(String, PathBuf),
 /// That file's bytes.
 fn read(shown: &str, file: &Path) -> Result<Vec<u8>, Fault> {
     let content = crate::scene::read_file(file);
-    content.map_err(|_| (format!("buffer {shown} cannot be read"), "put it beside the scene's file"))
+    content.map_err(|_| (format!("buffer {shown} cannot be read: {}", reason(file)), "put it beside the scene's file"))
+}
+
+/// Why a file could not be read, without its path, which may have line ends in it.
+fn reason(file: &Path) -> String {
+    match file.metadata() {
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => "no such file".into(),
+        Err(e) => e.to_string(),
+        Ok(metadata) if !metadata.is_file() => "not a regular file".into(),
+        Ok(_) => std::fs::File::open(file).err().map_or_else(|| "it has just changed".into(), |e| e.to_string()),
+    }
 }

@@ -27,6 +27,14 @@ pub fn convert(material: &gltf::Material) -> (Material, Vec3) {
     (matt.shiny(specular, exponent, reflectivity), emission)
 }
 
+/// True if light goes through: not for the modes alone, which exporters write for opaque materials as well.
+pub fn is_transparent(material: &gltf::Material) -> bool {
+    let pbr = material.pbr_metallic_roughness();
+    let [.., alpha] = pbr.base_color_factor();
+    let through = alpha < 1.0 || pbr.base_color_texture().is_some();
+    through && material.alpha_mode() != gltf::material::AlphaMode::Opaque
+}
+
 /// True if a texture decides about the colour.
 pub fn has_texture(material: &gltf::Material) -> bool {
     let pbr = material.pbr_metallic_roughness();

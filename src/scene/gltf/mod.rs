@@ -10,10 +10,11 @@
 //! colours are scaled so that together their brightest channel is 1. Without any, surfaces that shine become lights
 //! ([`super::lamps`]).
 //!
-//! What is not: textures, skins, morph targets, animations (the pose of the nodes counts), points and lines.
+//! What is not: textures, vertex colours, transparency, skins, morph targets, animations (the pose of the nodes counts), points and lines.
 
 mod accessor;
 mod buffers;
+mod head;
 mod material;
 mod room;
 mod walk;
@@ -42,10 +43,12 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
 /// As [`read`].
 pub fn read_bytes(path: &Path, bytes: &[u8], options: &Options) -> Result<Scene> {
     let at = |(problem, mend): Fault| Error::file(path, None, problem, mend);
-    length_has_header(bytes).map_err(at)?;
+    head::check_container(bytes).map_err(at)?;
+    let json = if bytes.starts_with(b"glTF") { json_chunk(bytes) } else { bytes };
     let mut limits = Limits::default();
     limits.read(bytes.len());
-    document_fits(bytes, &mut limits).map_err(at)?;
+    document_fits(json, &mut limits).map_err(at)?;
+    head::check(json).map_err(at)?;
     let unchecked = gltf::Gltf::from_slice_without_validation(bytes).map_err(|error| refusal(path, error))?;
     let json = unchecked.document.into_json();
     positions_exist(&json).map_err(at)?;
@@ -55,17 +58,6 @@ pub fn read_bytes(path: &Path, bytes: &[u8], options: &Options) -> Result<Scene>
     let mut walk = Walk::new(&document, &buffers, limits, options.camera.as_deref());
     walk.scene().map_err(at)?;
     walk.finish().map_err(at)
-}
-
-/// The crate (1.4.1) takes the header's twelve bytes from the length that a GLB gives itself, and overflows if that is less.
-fn length_has_header(bytes: &[u8]) -> Result<(), Fault> {
-    let length = bytes.get(8..12).filter(|_| bytes.starts_with(b"glTF"));
-    match length.map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])) {
-        Some(length) if length < 12 => {
-            Err((format!("this is no GLB: its length is given as {length}"), "export it again"))
-        }
-        _ => Ok(()),
-    }
 }
 
 /// The first chunk of a GLB, behind the headers of file and chunk.
@@ -81,8 +73,7 @@ const PER_OBJECT: usize = 704;
 const PER_MARK: usize = 36;
 
 /// Holds the document against what the file may take of memory, before the crate makes it.
-fn document_fits(bytes: &[u8], limits: &mut Limits) -> Result<(), Fault> {
-    let json = if bytes.starts_with(b"glTF") { json_chunk(bytes) } else { bytes };
+fn document_fits(json: &[u8], limits: &mut Limits) -> Result<(), Fault> {
     let count = |byte| json.iter().filter(|&&b| b == byte).count();
     let needed = count(b'{') * PER_OBJECT + count(b'"') * PER_MARK;
     limits.keep(needed).map_err(|_| {
@@ -113,8 +104,7 @@ fn refusal(path: &Path, error: gltf::Error) -> Error {
         }
         gltf::Error::Validation(faults) => {
             let first = faults.first().map(|(place, fault)| format!("{place}: {fault}")).unwrap_or_default();
-            let mend = "export it again; compression and other required extensions are not read";
-            Error::file(path, None, format!("{} faults, the first: {first}", faults.len()), mend)
+            Error::file(path, None, format!("{} faults, the first: {first}", faults.len()), EXPORT)
         }
         other => Error::file(path, None, format!("this is no glTF: {other}").replace('\n', " "), EXPORT),
     }

@@ -26,6 +26,8 @@ pub struct Walk<'a> {
     no_surface: usize,
     orthographic: bool,
     deformed: bool,
+    /// True if vertices have colours of their own.
+    coloured: bool,
     repaired: usize,
     pub(super) limits: Limits,
     /// Name of the camera that is wanted.
@@ -41,6 +43,9 @@ impl<'a> Walk<'a> {
         if document.materials().any(|m| material::has_texture(&m)) {
             scene.warnings.push("textures are left out: surfaces have their plain colours".into());
         }
+        if document.materials().any(|m| material::is_transparent(&m)) {
+            scene.warnings.push("transparent material: shown opaque".into());
+        }
         Walk {
             document,
             buffers,
@@ -52,6 +57,7 @@ impl<'a> Walk<'a> {
             no_surface: 0,
             orthographic: false,
             deformed: false,
+            coloured: false,
             repaired: 0,
             limits,
             camera,
@@ -142,6 +148,7 @@ impl<'a> Walk<'a> {
             self.no_surface += 1;
             return Ok(());
         }
+        self.coloured |= primitive.get(&gltf::Semantic::Colors(0)).is_some();
         let positions = accessor::vectors(&positions(primitive)?, self.buffers)?;
         let given = match primitive.get(&gltf::Semantic::Normals) {
             Some(normals) => Some(accessor::vectors(&normals, self.buffers)?),
@@ -219,6 +226,9 @@ impl<'a> Walk<'a> {
         }
         if self.orthographic && self.scene.camera.is_none() {
             warn("the camera is orthographic: it is left out".into());
+        }
+        if self.coloured {
+            warn("vertex colours passed over".into());
         }
         if self.deformed {
             warn("skins and morph targets are left out: meshes stand in their rest pose".into());

@@ -36,6 +36,8 @@ pub struct Creased {
     begin: Vec<u32>,
     /// Of each position, the sum of the faces' normals, if all of them are smooth with each other.
     whole: Vec<Option<DVec3>>,
+    /// Triangles that the faces make.
+    triangles: usize,
 }
 
 /// The normal of a corner.
@@ -57,7 +59,7 @@ impl Creased {
         // The first corner behind each face
         let mut ends: Vec<u32> = Vec::new();
         let mut known: HashMap<[u64; 3], u32, RandomState> = HashMap::default();
-        let mut points = Vec::new();
+        let (mut points, mut triangles) = (Vec::new(), 0);
         faces.visit(&mut |face: Face| {
             mesh.charge_for_now(PER_CORNER * (places.len() + face.corners.len()) + PER_FACE * normals.len())?;
             points.clear();
@@ -70,10 +72,14 @@ impl Creased {
             }
             normals.push(newell(&points).normalize_or_zero());
             ends.push(places.len() as u32);
+            triangles += face.corners.len().saturating_sub(2);
             Ok(())
         })?;
         let mut begin = vec![0u32; known.len() + 1];
         drop(known);
+        // They stay while the mesh grows
+        places.shrink_to_fit();
+        normals.shrink_to_fit();
         places.iter().for_each(|&place| begin[place as usize + 1] += 1);
         for i in 1..begin.len() {
             begin[i] += begin[i - 1];
@@ -88,11 +94,17 @@ impl Creased {
             }
             corner = end as usize;
         }
+        drop((next, ends));
         let whole = begin.windows(2).map(|range| {
             let around = &at[range[0] as usize..range[1] as usize];
             whole(around.iter().map(|&face| normals[face as usize]), angle).filter(|_| around.len() <= MOST)
         });
-        Ok(Creased { cosine: angle.cos(), whole: whole.collect(), normals, places, faces: at, begin })
+        Ok(Creased { cosine: angle.cos(), whole: whole.collect(), normals, places, faces: at, begin, triangles })
+    }
+
+    /// Positions, and triangles that the faces make.
+    pub fn size(&self) -> (usize, usize) {
+        (self.whole.len(), self.triangles)
     }
 
     /// The normal of a corner for its face, both by their places in the order of visits.

@@ -89,7 +89,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
         work: 0,
     };
     reader.mesh.read(bytes.len());
-    reader.file(path, &bytes, None)?;
+    reader.file(path, bytes, None)?;
     let mut scene = Scene { camera: reader.camera, ..reader.mesh.finish() };
     if scene.triangles.is_empty() && !scene.warnings.is_empty() {
         let problem = format!("there is no triangle: {}", scene.warnings.join(", "));
@@ -101,16 +101,21 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
 
 impl Reader {
     /// Goes through one file, with what was set around the node that includes it.
-    fn file(&mut self, path: &Path, bytes: &[u8], around: Option<&State>) -> Result<()> {
+    fn file(&mut self, path: &Path, bytes: Rc<Vec<u8>>, around: Option<&State>) -> Result<()> {
         let known = self.trees.get(path).cloned();
         let tree = match known {
             Some(tree) => tree,
             None => {
-                let tree = Rc::new(self.tree(bytes).map_err(|fault| fault.of(path))?);
+                let tree = Rc::new(self.tree(&bytes).map_err(|fault| fault.of(path))?);
                 self.trees.insert(path.to_owned(), Rc::clone(&tree));
                 tree
             }
         };
+        // The tree has all that is needed of them
+        drop(bytes);
+        if around.is_none() {
+            self.includes.release_first();
+        }
         let (tree, crease_angle) = &*tree;
         let mut state = around.copied().unwrap_or(State::new(*crease_angle));
         let walked = tree.roots.iter().try_for_each(|&root| self.walk(path, tree, root, &mut state, *crease_angle));

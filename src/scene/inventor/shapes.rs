@@ -128,6 +128,10 @@ impl Reader {
     fn faces(&mut self, node: &Node, state: &State) -> Result<(), Fault> {
         let faces = Faces::of(node, state.coordinates, state.clockwise)?;
         let normals = self.normals(node, state, &faces)?;
+        if let Normals::Made(made) = &normals {
+            let (positions, triangles) = made.size();
+            self.mesh.make_room(positions, triangles);
+        }
         let materials = Choice::of(node, "materialIndex", state.material_binding)?;
         if materials.is_overall() {
             self.part(0, state)?;

@@ -187,7 +187,7 @@ impl Reader {
         let known = self.includes.bytes();
         let (path, bytes) = self.includes.open(path, name)?;
         self.mesh.read(self.includes.bytes() - known);
-        self.file(&path, &bytes, Some(state))?;
+        self.file(&path, bytes, Some(state))?;
         self.includes.close();
         Ok(())
     }

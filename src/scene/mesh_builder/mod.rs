@@ -201,6 +201,17 @@ impl MeshBuilder {
         self.triangles.len()
     }
 
+    /// Sets room aside for a shape of about so many vertices and triangles: a vector that doubles takes three times what it
+    /// holds for a moment. Small shapes beside what is there already would only be slowed down, and have no need of it.
+    pub fn make_room(&mut self, vertices: usize, triangles: usize) {
+        let bytes = vertices.saturating_mul(size_of::<Vertex>());
+        let bytes = bytes.saturating_add(triangles.saturating_mul(size_of::<Triangle>()));
+        if self.limits.passing(bytes).is_ok() && triangles >= self.triangles.len() {
+            self.triangles.reserve_exact(triangles);
+            self.vertices.reserve_exact(vertices);
+        }
+    }
+
     /// Begins a shape: nothing that follows shares a vertex with what came before.
     pub fn new_shape(&mut self) {
         self.shared.clear();

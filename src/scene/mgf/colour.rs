@@ -1,6 +1,7 @@
 //! Colours without brightness: CIE chromaticities, from spectra as well.
 
 use glam::{DMat3, DVec3};
+use std::sync::LazyLock;
 
 /// CIE 1931 (x, y). The default is neutral: equal energy.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,9 +80,10 @@ impl Chromaticity {
         // The second radiation constant, in nm K; relative to 560 nm, so that cold bodies do not vanish
         let exponent = |wavelength: f64| 1.438_777e7 / (wavelength * kelvin);
         let scale = exponent(560.0);
+        let whole = 1.0 - (-scale).exp();
         integrate(|wavelength| {
             let x = exponent(wavelength);
-            (560.0 / wavelength).powi(5) * (scale - x).exp() * (1.0 - (-scale).exp()) / (1.0 - (-x).exp())
+            (560.0 / wavelength).powi(5) * (scale - x).exp() * whole / (1.0 - (-x).exp())
         })
     }
 }
@@ -89,21 +91,27 @@ impl Chromaticity {
 /// Wavelengths at which a spectrum is looked at.
 pub const SAMPLES: usize = 81;
 
-/// The colour of a spectrum, by the CIE's colour matching functions as sums of Gaussian lobes (Wyman, Sloan and Shirley
-/// 2013).
-fn integrate(spectrum: impl Fn(f64) -> f64) -> Option<Chromaticity> {
+/// Those wavelengths with the CIE's colour matching functions there, as sums of Gaussian lobes (Wyman, Sloan and Shirley
+/// 2013). Made once: a file may have a spectrum in every line.
+static MATCHING: LazyLock<[(f64, DVec3); SAMPLES]> = LazyLock::new(|| {
     let lobe = |wavelength: f64, center: f64, below: f64, above: f64| {
         let t = (wavelength - center) * if wavelength < center { below } else { above };
         (-0.5 * t * t).exp()
     };
-    let xyz = (0..SAMPLES).map(|i| 380.0 + 5.0 * i as f64).fold(DVec3::ZERO, |sum, w| {
+    std::array::from_fn(|i| {
+        let w = 380.0 + 5.0 * i as f64;
         let x = 1.056 * lobe(w, 599.8, 0.0264, 0.0323) + 0.362 * lobe(w, 442.0, 0.0624, 0.0374)
             - 0.065 * lobe(w, 501.1, 0.0490, 0.0382);
         let y = 0.821 * lobe(w, 568.8, 0.0213, 0.0247) + 0.286 * lobe(w, 530.9, 0.0613, 0.0322);
         let z = 1.217 * lobe(w, 437.0, 0.0845, 0.0278) + 0.681 * lobe(w, 459.0, 0.0385, 0.0725);
-        sum + DVec3::new(x, y, z) * spectrum(w)
-    });
-    Chromaticity::of_xyz(xyz)
+        (w, DVec3::new(x, y, z))
+    })
+});
+
+/// The colour of a spectrum.
+fn integrate(spectrum: impl Fn(f64) -> f64) -> Option<Chromaticity> {
+    let matching = MATCHING.iter();
+    Chromaticity::of_xyz(matching.fold(DVec3::ZERO, |sum, &(wavelength, xyz)| sum + xyz * spectrum(wavelength)))
 }
 
 #[cfg(test)]

@@ -12,16 +12,11 @@ use std::path::Path;
 /// Bytes that are gone through in the time of a word.
 const BYTES_PER_WORD: usize = 16;
 
-/// The words of an entity that follow its name, in place of those before: to the end of the line, and of the next if a
-/// backslash ends it.
+/// The words of an entity that follow its name, in place of those before.
 fn arguments<'a>(words: &mut Words<'a>, found: &mut Vec<&'a [u8]>) {
     found.clear();
     while let Some(word) = words.next_on_line() {
-        if word != b"\\" || words.peek_on_line().is_some() {
-            found.push(word);
-        } else if let Some(word) = words.next() {
-            found.push(word);
-        }
+        found.push(word);
     }
 }
 

@@ -1,6 +1,6 @@
 //! MGF, the Materials and Geometry Format of Radiance (Ward 1995, version 2).
 //!
-//! An entity is a line. What it means depends on three contexts (vertex, colour, material), which may have names, and on
+//! An entity is a line, which a backslash right before its end continues. What it means depends on three contexts (vertex, colour, material), which may have names, and on
 //! the transform; `xf` with arrays goes through its lines once for each place.
 //!
 //! **Shading.** What lets light through is shown opaque, with a warning. The diffuse colour is the reflectance `rd`, with
@@ -24,7 +24,7 @@ mod transform;
 use super::mesh_builder::MeshBuilder;
 use super::text::{Fault, Includes, Syntax, Trouble, Words};
 use super::{Options, Scene};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use colour::Chromaticity;
 use context::Contexts;
 use glam::{DVec3, Vec3};
@@ -43,7 +43,7 @@ const WORDS: usize = 2_000_000;
 const WORDS_PER_BYTE: usize = 16;
 
 /// A comment is an entity here: `#` may stand within names.
-static SYNTAX: Syntax = Syntax::new(b"", b"");
+static SYNTAX: Syntax = Syntax::new(b"", b"").with_continued_lines();
 
 /// A vertex context.
 #[derive(Clone, Copy, Default)]
@@ -89,7 +89,12 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     reader.mesh.read(bytes.len());
     reader.file(path, &bytes)?;
     drop(bytes);
-    Ok(reader.finish())
+    let scene = reader.finish();
+    if scene.triangles.is_empty() && !scene.warnings.is_empty() {
+        let problem = format!("there is no triangle: {}", scene.warnings.join(", "));
+        return Err(Error::file(path, None, problem, "a scene needs at least one"));
+    }
+    Ok(scene)
 }
 
 impl Reader {

@@ -53,6 +53,10 @@ impl Reader {
                 let Point { position, normal } = *self.vertices.find(center)?;
                 // Negative radii turn it inside out
                 let (inner, outer) = (number_of(inner)?, number_of(outer)?);
+                if !(0.0 <= inner && inner < outer || outer < inner && inner <= 0.0) {
+                    let mend = "put the inner one first; both are negative where the normals point inward";
+                    return Err(Fault::new(None, "the radii are not 0 <= inner < outer", mend));
+                }
                 self.mesh.torus(
                     position,
                     normal.as_dvec3(),

@@ -183,7 +183,7 @@ impl Faces {
 
     /// Holds the memory that all of it takes against what the file may take.
     #[inline]
-    fn hold(&self, line: usize) -> Result<(), Fault> {
+    pub fn hold(&self, line: usize) -> Result<(), Fault> {
         let bytes = self.positions.len() * PER_POSITION
             + self.normals.len() * PER_NORMAL
             + self.keys.len() * PER_VERTEX

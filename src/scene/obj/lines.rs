@@ -3,6 +3,7 @@
 use super::Fault;
 use crate::scene::text::number;
 use glam::Vec3;
+use std::borrow::Cow;
 
 /// A text, line by line and word by word. A backslash before the end of a line continues it.
 #[derive(Clone)]
@@ -39,17 +40,57 @@ impl<'a> Lines<'a> {
     pub fn word(&mut self) -> Option<&'a [u8]> {
         self.skip_blanks();
         let rest = self.bytes.get(self.at..).filter(|rest| rest.first().is_some_and(|&b| b > b' ' && b != b'#'))?;
-        let word = &rest[..number::token_length(rest)];
+        let mut word = &rest[..number::token_length(rest)];
+        if let [kept @ .., b'\\'] = word
+            && matches!(rest.get(word.len()), Some(b'\n' | b'\r'))
+        {
+            word = kept;
+        }
         self.at += word.len();
         Some(word)
     }
 
-    /// The rest of the line without blanks around it.
-    pub fn rest(&mut self) -> &'a [u8] {
+    /// The rest of the line, and of those that continue it, without blanks around it. What may be a comment stays: names of
+    /// materials have `#` in them as well, see [`without_comment`].
+    pub fn rest(&mut self) -> Cow<'a, [u8]> {
+        let (piece, continued) = self.piece();
+        if !continued {
+            return Cow::Borrowed(piece.trim_ascii());
+        }
+        let mut whole = piece.to_vec();
+        loop {
+            self.skip_line();
+            let (piece, continued) = self.piece();
+            whole.push(b' ');
+            whole.extend(piece);
+            if !continued {
+                return Cow::Owned(whole.trim_ascii().to_vec());
+            }
+        }
+    }
+
+    /// The rest of this line alone, without the backslash that continues it, and whether there is one.
+    fn piece(&mut self) -> (&'a [u8], bool) {
         let rest = &self.bytes[self.at..];
         let end = rest.iter().position(|&b| b == b'\n' || b == b'\r').unwrap_or(rest.len());
         self.at += end;
-        rest[..end].trim_ascii()
+        match &rest[..end] {
+            [kept @ .., b'\\'] if end < rest.len() => (kept, true),
+            piece => (piece, false),
+        }
+    }
+
+    /// Goes behind the end of the line and of those that continue it. A backslash that ends a comment continues nothing: it
+    /// may be the end of a folder's name.
+    #[inline]
+    pub fn end_statement(&mut self) {
+        loop {
+            let (piece, continued) = self.piece();
+            self.skip_line();
+            if !continued || piece.contains(&b'#') {
+                return;
+            }
+        }
     }
 
     /// Goes behind the end of the line. Lines end in LF, CRLF or CR.
@@ -86,7 +127,17 @@ impl<'a> Lines<'a> {
             self.at += length;
             return Ok(value);
         }
-        let problem = match self.word() {
+        self.other_float(what)
+    }
+
+    /// A number that a backslash follows, or none.
+    #[cold]
+    fn other_float(&mut self, what: &str) -> Result<f32, Fault> {
+        let word = self.word();
+        if let Some((value, _)) = word.and_then(number::float) {
+            return Ok(value);
+        }
+        let problem = match word {
             Some(word) => format!("{what}: `{}` is not a number", printable(word)),
             None => format!("{what} has too few numbers"),
         };
@@ -132,6 +183,12 @@ impl<'a> Lines<'a> {
         }
         Ok(colour.max(Vec3::ZERO))
     }
+}
+
+/// A name without the comment behind it.
+pub fn without_comment(name: &[u8]) -> &[u8] {
+    let begins = |&at: &usize| name[at] == b'#' && (at == 0 || name[at - 1].is_ascii_whitespace());
+    (0..name.len()).find(begins).map_or(name, |at| name[..at].trim_ascii_end())
 }
 
 /// A piece of the file inside a message: readable, short.

@@ -67,7 +67,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Library, Fault> {
     while let Some(keyword) = lines.keyword() {
         if keyword == b"newmtl" {
             close(current.take(), &mut library);
-            current = Some((lines.rest().to_vec(), Values::default()));
+            current = Some((lines.rest().into_owned(), Values::default()));
         } else if let Some((_, values)) = &mut current {
             match keyword {
                 b"Kd" => values.diffuse = colour(&mut lines, "Kd")?.or(values.diffuse),
@@ -79,7 +79,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Library, Fault> {
                 other => library.textures |= other.starts_with(b"map_K"),
             }
         }
-        lines.skip_line();
+        lines.end_statement();
     }
     close(current, &mut library);
     Ok(library)

@@ -4,9 +4,11 @@ use super::header::{Element, Header, Kind};
 use super::source::{Bad, Source};
 use crate::math::Vertex;
 use crate::scene::mesh_builder::Limits;
+use crate::scene::polygon::{MAX_CORNERS, Triangulator, newell};
 use crate::scene::text::{Fault, quote};
 use crate::scene::{MAX_ELEMENTS, Triangle};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
+use std::ops::Range;
 
 /// Corners of a polygon from which on the memory of its triangles is looked at, every so many of them.
 const MANY: i64 = 4;
@@ -21,6 +23,12 @@ pub struct Body {
     pub bytes_after: usize,
     /// What the file may take of memory.
     limits: Limits,
+    triangulator: Triangulator,
+    /// Corners of the present polygon: its vertices, and where they lie.
+    corners: Vec<u32>,
+    points: Vec<DVec3>,
+    /// Fans of polygons whose vertices stand behind them in the file.
+    waiting: Vec<Range<u32>>,
 }
 
 /// Where the values of a vertex go: index of the property of x, y, z, nx, ny, nz.
@@ -42,6 +50,7 @@ pub fn read<S: Source>(
     check_counts::<S>(header, length)?;
     let mut body = Body::default();
     body.limits.read(length);
+    body.triangulator.read(length);
     for element in &header.elements {
         if std::ptr::eq(element, vertex) {
             read_vertices(element, &mut source, &mut body)?;
@@ -52,6 +61,9 @@ pub fn read<S: Source>(
                 skip_row(element, &mut source).map_err(|bad| explain(bad, &source, element, row))?;
             }
         }
+    }
+    for fan in std::mem::take(&mut body.waiting) {
+        body.cut(fan.start as usize..fan.end as usize);
     }
     body.bytes_after = source.left();
     if body.triangles.is_empty() {
@@ -202,8 +214,35 @@ impl Body {
     fn hold(&self, vertices: u64) -> Result<(), Trouble> {
         // Normals may have to be made anew beside the old ones; a vector that grows is there in two sizes for a moment
         let [vertices, triangles] = [vertices as usize * size_of::<Vertex>(), size_of_val(&*self.triangles)];
-        let bytes = 2 * vertices + 3 * triangles;
+        let bytes = 2 * vertices + 3 * triangles + 3 * size_of_val(&*self.waiting);
         self.limits.passing(bytes).map_err(|fault| Trouble::Memory(fault.problem))
+    }
+
+    /// Takes a polygon that stands as a fan, and cuts it as [`crate::scene::polygon`] says once its vertices are there.
+    fn polygon(&mut self, fan: Range<usize>, vertices: u64) {
+        if fan.len() > MAX_CORNERS - 2 {
+            return;
+        }
+        if (self.vertices.len() as u64) < vertices {
+            self.waiting.push(fan.start as u32..fan.end as u32);
+        } else {
+            self.cut(fan);
+        }
+    }
+
+    /// Puts other triangles in the place of a fan that does not cover its polygon.
+    fn cut(&mut self, fan: Range<usize>) {
+        let Body { vertices, triangles, corners, points, triangulator, .. } = self;
+        let fan = &mut triangles[fan];
+        corners.clear();
+        corners.extend(&fan[0].vertices[..2]);
+        corners.extend(fan.iter().map(|triangle| triangle.vertices[2]));
+        points.clear();
+        points.extend(corners.iter().map(|&corner| vertices[corner as usize].position.as_dvec3()));
+        let found = triangulator.triangles(points, &[], newell(points));
+        for (triangle, found) in fan.iter_mut().zip(found) {
+            triangle.vertices = found.map(|i| corners[i as usize]);
+        }
     }
 }
 
@@ -240,6 +279,7 @@ fn read_face<S: Source>(
                     }
                     continue;
                 }
+                let begin = body.triangles.len();
                 let (first, mut previous) = (next()?, next()?);
                 for i in 2..corners {
                     let corner = next()?;
@@ -251,6 +291,9 @@ fn read_face<S: Source>(
                 }
                 if body.triangles.len() > MAX_ELEMENTS {
                     return Err(Trouble::TooMany);
+                }
+                if corners > 3 {
+                    body.polygon(begin..body.triangles.len(), vertices);
                 }
             }
             kind => skip(kind, source)?,

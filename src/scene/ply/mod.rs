@@ -6,8 +6,8 @@
 //! every count is held against the bytes that are left before anything is allocated from it.
 //!
 //! What is taken: x, y, z of the vertices, nx, ny, nz if all three are there (otherwise smooth normals are computed, see
-//! [`crate::scene::normals`]), and the faces' `vertex_indices` or `vertex_index`. A polygon with corners 0 to n becomes
-//! the fan (0, k + 1, k + 2). All other properties and elements are passed over.
+//! [`crate::scene::normals`]), and the faces' `vertex_indices` or `vertex_index`, polygons as
+//! [`super::polygon`] says. All other properties and elements are passed over.
 
 mod body;
 mod header;

@@ -12,9 +12,10 @@ const MAX_DEPTH: usize = 64;
 /// Most includes that are followed in all.
 const MAX_READINGS: usize = 20_000;
 
-/// Bytes that may be gone through in all: so many in any case, and so many times the files' sizes.
-const BASE: usize = 16 << 20;
-const TIMES: usize = 200;
+/// Bytes that may be gone through in all, readers' second passes included: so many in any case, and so many times the
+/// files' sizes. Some hundred megabytes are a second.
+const BASE: usize = 64 << 20;
+const TIMES: usize = 16;
 
 /// The files of a scene.
 pub struct Includes {
@@ -68,6 +69,11 @@ impl Includes {
         self.bytes
     }
 
+    /// Lets go of the first file's bytes: no file may include it, so that nobody asks for them again.
+    pub fn release_first(&mut self) {
+        self.first.1 = Rc::default();
+    }
+
     /// Opens the file that `including` calls `name`: its path as errors show it, and its bytes. [`Includes::close`]
     /// ends it.
     ///
@@ -114,7 +120,8 @@ impl Includes {
         self.readings += 1;
         self.passed += bytes.len();
         if self.readings > MAX_READINGS || self.passed > BASE + TIMES * self.bytes {
-            return fault("files are included too often", "are there includes of includes of includes?".into());
+            let problem = format!("files are included too often, {} MiB in all", self.passed >> 20);
+            return fault(&problem, "are there includes of includes of includes?".into());
         }
         self.open.push(whole);
         Ok((shown, bytes))
@@ -125,9 +132,10 @@ impl Includes {
         self.open.pop();
     }
 
-    /// Starts again with the first file.
+    /// Starts again with the first file. What has been gone through before counts.
     pub fn rewind(&mut self) {
         self.open.truncate(1);
-        (self.readings, self.passed) = (0, 0);
+        self.readings = 0;
+        self.passed += self.first.1.len();
     }
 }

@@ -1,10 +1,12 @@
 //! What readers of text formats share: words with their lines, numbers, faults.
 
+mod home;
 mod includes;
 pub mod number;
 mod words;
 
 use crate::error::Error;
+pub use home::Home;
 pub use includes::Includes;
 use std::path::Path;
 pub use words::{Syntax, Words};

@@ -18,6 +18,8 @@ enum Class {
     Comment,
     /// Starts a word that ends with the next quotation mark.
     Quotation,
+    /// Right before the end of a line, makes a blank of that; part of a word elsewhere.
+    Continuation,
 }
 
 /// What the bytes of a format mean. Everything up to the space is a blank.
@@ -61,6 +63,12 @@ impl Syntax {
         self
     }
 
+    /// The same, but a backslash right before the end of a line continues the line, comments included.
+    pub const fn with_continued_lines(mut self) -> Syntax {
+        self.classes[b'\\' as usize] = Class::Continuation;
+        self
+    }
+
     #[inline(always)]
     fn class(&self, byte: u8) -> Class {
         self.classes[byte as usize]
@@ -77,12 +85,14 @@ pub struct Words<'a> {
     here: usize,
     /// Line in which the word that was read last began.
     line: usize,
+    /// Ends of lines so far that a backslash took away.
+    joined: usize,
 }
 
 impl<'a> Words<'a> {
     /// The words of `bytes`, from line 1.
     pub fn new(bytes: &'a [u8], syntax: &'a Syntax) -> Words<'a> {
-        Words { bytes, syntax, at: 0, here: 1, line: 1 }
+        Words { bytes, syntax, at: 0, here: 1, line: 1, joined: 0 }
     }
 
     /// Line of the word that was read last.
@@ -121,9 +131,26 @@ impl<'a> Words<'a> {
                         self.at += 1;
                     }
                 }
-                Class::Word | Class::Punctuation | Class::Quotation => return,
+                Class::Continuation if self.continues() => self.join(),
+                Class::Word | Class::Punctuation | Class::Quotation | Class::Continuation => return,
             }
             self.at += 1;
+        }
+    }
+
+    /// True if the byte at `at`, a backslash, is the last of its line.
+    fn continues(&self) -> bool {
+        is_last(self.syntax, &self.bytes[self.at..])
+    }
+
+    /// Goes from a backslash to the last byte of the end of line that it takes away.
+    #[cold]
+    fn join(&mut self) {
+        let ends = &self.bytes[self.at + 1..];
+        if !ends.is_empty() {
+            self.at += if ends.starts_with(b"\r\n") { 2 } else { 1 };
+            self.here += 1;
+            self.joined += 1;
         }
     }
 
@@ -132,7 +159,14 @@ impl<'a> Words<'a> {
     fn word(&self) -> &'a [u8] {
         let rest = &self.bytes[self.at..];
         let length = match rest.first().map(|&b| self.syntax.class(b)) {
-            Some(Class::Word) => rest.iter().position(|&b| self.syntax.class(b) != Class::Word).unwrap_or(rest.len()),
+            Some(Class::Word) => {
+                let length = rest.iter().position(|&b| self.syntax.class(b) != Class::Word).unwrap_or(rest.len());
+                match rest.get(length).map(|&b| self.syntax.class(b)) {
+                    Some(Class::Continuation) => length_with_backslashes(self.syntax, rest),
+                    _ => length,
+                }
+            }
+            Some(Class::Continuation) => length_with_backslashes(self.syntax, rest),
             Some(Class::Quotation) => string_length(rest),
             Some(_) => 1,
             None => 0,
@@ -175,14 +209,14 @@ impl<'a> Words<'a> {
     /// The next word, if it stands in the line of the word that was read last.
     #[inline]
     pub fn next_on_line(&mut self) -> Option<&'a [u8]> {
-        let (at, here) = (self.at, self.here);
+        let (at, here, joined) = (self.at, self.here, self.joined);
         match self.peek() {
-            Some(word) if self.here == here => {
+            Some(word) if self.here - self.joined == here - joined => {
                 self.pass(word);
                 Some(word)
             }
             _ => {
-                (self.at, self.here) = (at, here);
+                (self.at, self.here, self.joined) = (at, here, joined);
                 None
             }
         }
@@ -190,9 +224,9 @@ impl<'a> Words<'a> {
 
     /// The next word, which stays, if it stands in the line of the word that was read last.
     pub fn peek_on_line(&mut self) -> Option<&'a [u8]> {
-        let (at, here, line) = (self.at, self.here, self.line);
+        let (at, here, line, joined) = (self.at, self.here, self.line, self.joined);
         let word = self.next_on_line();
-        (self.at, self.here, self.line) = (at, here, line);
+        (self.at, self.here, self.line, self.joined) = (at, here, line, joined);
         word
     }
 
@@ -206,7 +240,12 @@ impl<'a> Words<'a> {
 
     /// Passes over the rest of the line.
     pub fn skip_line(&mut self) {
-        while self.bytes.get(self.at).is_some_and(|&b| self.syntax.class(b) != Class::LineEnd) {
+        while let Some(&byte) = self.bytes.get(self.at) {
+            match self.syntax.class(byte) {
+                Class::LineEnd => return,
+                Class::Continuation if self.continues() => self.join(),
+                _ => {}
+            }
             self.at += 1;
         }
     }
@@ -336,6 +375,22 @@ impl<'a> Words<'a> {
         }
         Ok(wanted)
     }
+}
+
+/// True if a backslash at the start is the last byte of its line, or of the file.
+fn is_last(syntax: &Syntax, bytes: &[u8]) -> bool {
+    bytes.get(1).is_none_or(|&b| syntax.class(b) == Class::LineEnd)
+}
+
+/// Length of a word that may have backslashes in it, but does not end with one that continues the line.
+#[cold]
+fn length_with_backslashes(syntax: &Syntax, bytes: &[u8]) -> usize {
+    let ends = |at: usize| match syntax.class(bytes[at]) {
+        Class::Word => false,
+        Class::Continuation => is_last(syntax, &bytes[at..]),
+        _ => true,
+    };
+    (0..bytes.len()).find(|&at| ends(at)).unwrap_or(bytes.len())
 }
 
 /// Length of a string with its marks; one that does not end goes to the end of the file.

@@ -171,6 +171,13 @@ fn another_camera_may_be_named() {
     assert!(error.contains("there are no keyframes `Slide`"), "{error}");
 }
 
+/// Without any time there is no moment to name: the viewpoint's is 0, and animated triangles stand where they begin.
+#[test]
+fn a_viewpoint_without_animation_is_of_time_zero() {
+    let scene = aff(&format!("v from 0 0 9 at 0 0 0 up 0 1 0 angle 40\n{TRIANGLE}"));
+    assert_eq!(scene.camera.unwrap().frames[0].time, 0.0);
+}
+
 /// The thesis's museum and robots: counts, vertices and the grid's row (`thesis/*.csv`) as published. The robots' time is
 /// not published; of whole seconds and of the 800 frames it was looked for (time 6 gives all four numbers).
 #[test]

@@ -81,6 +81,22 @@ fn a_file_outside_is_read_if_that_is_wanted() {
     assert!(files.load("main.aff:outside=yes").unwrap().triangles.len() > 100);
 }
 
+/// What is not visible takes no memory, but time.
+#[test]
+fn a_large_file_is_not_read_over_and_over() {
+    let large = "p 3 0 0 0 1 0 0 0 1 0\n".repeat(200_000);
+    let including = |times: usize| {
+        let includes = "i 0 large.aff\n".repeat(times);
+        Files::new(&[
+            ("main.aff", &format!("s 0 0 0 1 x ghost {{\n{includes}}}\nk ghost {{ visibility 1 0 0 }}")),
+            ("large.aff", &large),
+        ])
+    };
+    let message = refusal(including(200).load("main.aff:time=1"));
+    assert!(message.contains("main.aff:") && message.contains("included too often"), "{message}");
+    assert_eq!(including(10).load("main.aff:time=1").unwrap().triangles.len(), 24 * 11 * 2);
+}
+
 #[test]
 fn copies_of_copies_come_to_an_end() {
     // Ten spheres, ten times, ten times, ten times, ...

@@ -109,7 +109,8 @@ fn a_triangle_in_every_kind_of_file() {
         assert_eq!(load(uri, "").unwrap().content_hash(), scene.content_hash(), "{uri}");
     }
     for (uri, words) in [
-        ("c.bin", "buffer c.bin cannot be read"),
+        ("c.bin", "buffer c.bin cannot be read: no such file"),
+        ("sub", "buffer sub cannot be read: not a regular file"),
         ("../b.bin", "outside=yes"),
         ("%2e%2e/b.bin", "outside=yes"),
         ("/etc/passwd", "outside=yes"),
@@ -315,7 +316,10 @@ fn what_is_broken_is_refused() {
         (("/accessors", json!([])), "accessor 0, which is not there"),
         (("/nodes/0/mesh", json!(1)), "faults, the first"),
         (("/nodes/0/scale", json!([1e38, 1e38, 1e38])), ""),
-        (("/extensionsRequired", json!(["KHR_draco_mesh_compression"])), "required extensions"),
+        (
+            ("/extensionsRequired", json!(["KHR_lights_punctual", "X_y"])),
+            "requires the extension X_y, which is not read",
+        ),
     ] {
         let (place, value) = changes;
         let message = refusal(try_load(&with(&[(place, value.clone())])));
@@ -326,6 +330,82 @@ fn what_is_broken_is_refused() {
         let cut = gltf::read_bytes(Path::new("a.glb"), &sound[..length], &Options::default());
         assert!(!refusal(cut).is_empty(), "{length}");
     }
+}
+
+#[test]
+fn other_versions_and_compression_are_named_first() {
+    for (version, least, read) in [
+        ("2.0", None, true),
+        ("2.1", None, true),
+        ("2.5", Some("2.0"), true),
+        ("2.5", Some("2.5"), false),
+        ("1.0", None, false),
+        ("3.0", None, false),
+        ("banana", None, false),
+        ("2.", None, false),
+    ] {
+        let mut document = with(&[("/asset/version", json!(version))]);
+        if let Some(least) = least {
+            document["asset"]["minVersion"] = json!(least);
+        }
+        match try_load(&document) {
+            Ok(_) => assert!(read, "{version} {least:?}"),
+            Err(error) => assert!(!read && error.to_string().contains("only 2.0 is read"), "{version}: {error}"),
+        }
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("old.gltf");
+    std::fs::write(&path, r#"{"asset": {"version": "1.0"}, "buffers": {"b": {"uri": "b.bin"}}, "meshes": {}}"#)
+        .unwrap();
+    let message = refusal(scene::load(path.to_str().unwrap()));
+    assert!(message.contains("old.gltf: this is glTF of version 1.0, only 2.0 is read"), "{message}");
+    // As compressed files are: accessors without data
+    let mut document = with(&[("/extensionsRequired", json!(["KHR_draco_mesh_compression"]))]);
+    for accessor in document["accessors"].as_array_mut().unwrap() {
+        accessor.as_object_mut().unwrap().remove("bufferView");
+    }
+    let message = refusal(try_load(&document));
+    assert!(message.contains("KHR_draco_mesh_compression") && message.contains("gltf-transform"), "{message}");
+    let sound = glb(&document, &bytes());
+    let read = |bytes: &[u8]| refusal(gltf::read_bytes(Path::new("a.glb"), bytes, &Options::default()));
+    assert!(read(&sound[..sound.len() - 1]).contains("the file is cut off: it has"));
+    assert!(read(&sound[..10]).contains("the file is cut off within its header"));
+    assert!(read(&[&sound[..4], &[1, 0, 0, 0], &sound[8..]].concat()).contains("a GLB of version 1"));
+}
+
+#[test]
+fn what_is_not_shown_is_told() {
+    let material = |mode: &str, alpha: f32| {
+        with(&[
+            (
+                "/materials",
+                json!([{ "alphaMode": mode, "pbrMetallicRoughness": { "baseColorFactor": [1, 1, 1, alpha] } }]),
+            ),
+            ("/meshes/0/primitives/0/material", json!(0)),
+        ])
+    };
+    for (mode, alpha, told) in
+        [("BLEND", 0.5, true), ("MASK", 0.5, true), ("OPAQUE", 0.5, false), ("BLEND", 1.0, false)]
+    {
+        let expected: &[&str] = if told { &["transparent material: shown opaque"] } else { &[] };
+        assert_eq!(load(&material(mode, alpha)).warnings, expected, "{mode} {alpha}");
+    }
+    let coloured = with(&[("/meshes/0/primitives/0/attributes/COLOR_0", json!(1))]);
+    assert_eq!(load(&coloured).warnings, ["vertex colours passed over"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn links_do_not_lead_out_of_the_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("in")).unwrap();
+    std::fs::write(folder.path().join("out.bin"), bytes()).unwrap();
+    std::os::unix::fs::symlink(folder.path().join("out.bin"), folder.path().join("in/b.bin")).unwrap();
+    let path = folder.path().join("in/a.gltf");
+    std::fs::write(&path, with(&[("/buffers/0/uri", json!("b.bin"))]).to_string()).unwrap();
+    let message = refusal(scene::load(path.to_str().unwrap()));
+    assert!(message.contains("buffer b.bin lies outside of the scene's folder"), "{message}");
+    scene::load(&format!("{}:outside=yes", path.display())).unwrap();
 }
 
 proptest! {

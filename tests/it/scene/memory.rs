@@ -141,3 +141,27 @@ fn built_files_take_four_times_their_scene_at_most() {
     hold(&written);
     assert!(limit(&scene, 7) == 4 * size(&scene) + 7 + BASE && size(&scene) > 600_000);
 }
+
+/// Faces whose normals are made: all of them smooth, some of them, none.
+#[test]
+fn made_normals_take_four_times_the_scene_at_most() {
+    const N: usize = 400;
+    let mut mesh = "Coordinate3 { point [\n".to_owned();
+    for i in 0..N {
+        for j in 0..N {
+            writeln!(mesh, "{i} {j} {},", (7 * i + 3 * j) % 5).unwrap();
+        }
+    }
+    mesh += "] }\nIndexedFaceSet { coordIndex [\n";
+    for a in (0..N - 1).flat_map(|i| (0..N - 1).map(move |j| i * N + j)) {
+        writeln!(mesh, "{a},{},{},{},-1,", a + N, a + N + 1, a + 1).unwrap();
+    }
+    let files = Files::new(&[]);
+    let written = ["3.1", "1", "0"].map(|angle| {
+        let name = format!("crease{angle}.iv");
+        let text = format!("#Inventor V2.1 ascii\nShapeHints {{ creaseAngle {angle} }}\n{mesh}] }}\n");
+        files.write(&name, text.as_bytes());
+        (files.path(&name), text.len() as u64)
+    });
+    hold(&written);
+}

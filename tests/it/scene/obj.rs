@@ -41,6 +41,10 @@ fn faces_in_all_ways_of_writing() {
         "fo 1 2 3 4",
         "f 1 2 \\\n 3 4",
         "f 1 2 \\\r\n3 4\r",
+        "f 1 2 3\\\n 4",
+        "f 1 2\\\r\n3 \\\n\\\n4",
+        "vp 1 2 \\\n3\nf 1 2 3 4",
+        "# C:\\models\\\nf 1 2 3 4",
         "f\t1  2 3 4 # a comment",
         "f 1/-1 2/-9 3 4",
     ] {
@@ -53,6 +57,7 @@ fn faces_in_all_ways_of_writing() {
         format!("{SQUARE}f 1 2 3 4\n").replace('\n', "\r"),
         SQUARE.replace(" 0\n", " 0.0 1.0\n") + "f 1 2 3 4",
         SQUARE.replace(" 0\n", " 0e0 0.1 0.2 0.3\n") + "f 1 2 3 4",
+        SQUARE.replace(" 0\n", "\\\n 0\\\n\n") + "f 1 2 3 4",
         SQUARE.replace("v 1 0 0", "v 1. .0 -.0e5") + "f 1 2 3 4",
     ] {
         assert_eq!(corners(&load(&text)), corners(&square), "{text:?}");
@@ -141,9 +146,18 @@ fn materials_are_mapped_as_documented() {
 fn libraries_are_found_or_missed_or_refused() {
     let text = |library: &str| format!("mtllib {library}\n{SQUARE}usemtl gloss\nf 1 2 3\n").into_bytes();
     let with = |library: &str, name: &str| load_with(&[("a.obj", &text(library)), (name, LIBRARY.as_bytes())], "");
-    for (library, name) in
-        [("b.mtl", "b.mtl"), ("my own.mtl", "my own.mtl"), ("no.mtl b.mtl", "b.mtl"), ("./b.mtl", "b.mtl")]
-    {
+    for (library, name) in [
+        ("b.mtl", "b.mtl"),
+        ("my own.mtl", "my own.mtl"),
+        ("no.mtl b.mtl", "b.mtl"),
+        ("./b.mtl", "b.mtl"),
+        ("no.mtl \\\nb.mtl", "b.mtl"),
+        ("b.mtl # the library", "b.mtl"),
+        ("no.mtl b.mtl # the library", "b.mtl"),
+        ("b #2.mtl", "b #2.mtl"),
+        (&format!("{}.mtl", "b".repeat(150)), &format!("{}.mtl", "b".repeat(150))),
+        (&format!("{}/b.mtl", "./".repeat(60)), "b.mtl"),
+    ] {
         let scene = with(library, name).unwrap();
         assert_eq!(scene.materials[scene.triangles[0].material as usize].exponent, 64.0, "{library}");
     }
@@ -159,6 +173,97 @@ fn libraries_are_found_or_missed_or_refused() {
     assert!(refusal(load_with(&files, "")).contains("b.mtl:2: Kd has too few numbers"));
     let files: [(&str, &[u8]); 2] = [("a.obj", &text("b.mtl")), ("b.mtl", b"newmtl x\n\nNs high\n")];
     assert!(refusal(load_with(&files, "")).contains("b.mtl:3: Ns: `high` is not a number"));
+}
+
+/// A name in Latin-1, as the file system has it.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_library_is_found_by_its_bytes() {
+    use std::os::unix::ffi::OsStrExt;
+    let folder = tempfile::tempdir().unwrap();
+    let name = b"stra\xdfe.mtl";
+    std::fs::write(folder.path().join(std::ffi::OsStr::from_bytes(name)), LIBRARY).unwrap();
+    let text = [b"mtllib ", &name[..], b"\n", SQUARE.as_bytes(), b"usemtl gloss\nf 1 2 3"].concat();
+    std::fs::write(folder.path().join("a.obj"), text).unwrap();
+    let scene = scene::load(folder.path().join("a.obj").to_str().unwrap()).unwrap();
+    assert_eq!(scene.materials[scene.triangles[0].material as usize].exponent, 64.0);
+}
+
+#[cfg(unix)]
+#[test]
+fn links_do_not_lead_out_of_the_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = |name: &str| folder.path().join(name);
+    std::fs::create_dir(place("in")).unwrap();
+    std::fs::write(place("out.mtl"), LIBRARY).unwrap();
+    std::fs::write(place("in/real.mtl"), LIBRARY).unwrap();
+    std::os::unix::fs::symlink(place("out.mtl"), place("in/out.mtl")).unwrap();
+    std::os::unix::fs::symlink(place("in/real.mtl"), place("in/link.mtl")).unwrap();
+    let load = |library: &str, settings: &str| {
+        std::fs::write(place("in/a.obj"), format!("mtllib {library}\n{SQUARE}usemtl gloss\nf 1 2 3\n")).unwrap();
+        scene::load(&format!("{}{settings}", place("in/a.obj").display()))
+    };
+    let message = refusal(load("out.mtl", ""));
+    assert!(message.contains("a.obj:1: the library out.mtl lies outside"), "{message}");
+    for (library, settings) in [("out.mtl", ":outside=yes"), ("link.mtl", "")] {
+        let scene = load(library, settings).unwrap();
+        assert_eq!(scene.materials[scene.triangles[0].material as usize].exponent, 64.0, "{library}");
+    }
+    // A scene that is a link itself has its libraries beside the link, or beside what it leads to
+    std::os::unix::fs::symlink(place("in/a.obj"), place("b.obj")).unwrap();
+    assert!(scene::load(place("b.obj").to_str().unwrap()).unwrap().warnings[0].contains("link.mtl is not there"));
+    std::fs::write(place("link.mtl"), LIBRARY).unwrap();
+    let warnings = scene::load(place("b.obj").to_str().unwrap()).unwrap().warnings;
+    assert!(warnings.iter().all(|w| w.starts_with("textures")), "{warnings:?}");
+}
+
+#[test]
+fn materials_may_come_late_and_names_may_have_comments() {
+    let of = |text: &str, library: &str| {
+        let text = format!("{SQUARE}{text}\nf 1 2 3\nmtllib a.mtl\nusemtl dull\nf 1 2 3\n");
+        let scene = load_with(&[("a.obj", text.as_bytes()), ("a.mtl", library.as_bytes())], "").unwrap();
+        (scene.materials[scene.triangles[0].material as usize], scene.warnings, scene.lights.len())
+    };
+    let textures = "textures are left out: surfaces have their plain colours";
+    let early = of("mtllib a.mtl\nusemtl gloss", LIBRARY);
+    assert_eq!((early.0.exponent, early.1.clone()), (64.0, vec![textures.to_owned()]));
+    for text in
+        ["usemtl gloss", "usemtl gloss # the material", "usemtl \\\ngloss", "mtllib a.mtl\nusemtl gloss # shiny"]
+    {
+        assert_eq!(of(text, LIBRARY), early, "{text}");
+    }
+    // A `#` in a name is one where a library has the whole name
+    for text in ["usemtl gloss #2", "mtllib a.mtl\nusemtl gloss #2"] {
+        let two = of(text, &format!("{LIBRARY}newmtl gloss #2\nKd 1 0 0\n"));
+        assert_eq!((two.0.diffuse, two.1.len()), (Vec3::X, 1), "{text}");
+    }
+    let never = of("usemtl nothing # at all", LIBRARY);
+    assert!(never.1.iter().any(|w| w.contains("neutral grey: nothing # at all")), "{:?}", never.1);
+    // What shines late is a lamp as well
+    assert_eq!(of("usemtl late", &format!("{LIBRARY}newmtl late\nKe 1 1 1\n")).2, 1);
+}
+
+#[test]
+fn a_lamp_that_is_not_there_is_told() {
+    let text = format!("mtllib a.mtl\n{SQUARE}usemtl gloss\nf 1 2 3\n");
+    let mut files = vec![("a.obj", text.as_bytes()), ("a.mtl", LIBRARY.as_bytes())];
+    assert_eq!(
+        load_with(&files, ":lamp=glos").unwrap().warnings[0],
+        "lamp=glos: there is no such material, there are dull, gloss, loud, mirror"
+    );
+    assert_eq!(load_with(&files, ":lamp=gloss").unwrap().warnings.len(), 1);
+    // Of several files that may be one scene another may have it
+    files.push(("b.obj", text.as_bytes()));
+    assert_eq!(load_with(&files, ":lamp=glos").unwrap().warnings.len(), 1);
+}
+
+#[test]
+fn a_library_is_looked_for_once() {
+    let scene = load(&format!("{}{SQUARE}f 1 2 3", "mtllib no.mtl\n".repeat(5)));
+    assert_eq!(scene.warnings, ["material library no.mtl is not there: its materials are neutral grey"]);
+    let many: String = (0..10_001).map(|i| format!(" m{i}.mtl")).collect();
+    let message = refusal(load_with(&[("a.obj", format!("\nmtllib{many}\n").as_bytes())], ""));
+    assert!(message.contains("a.obj:2: more than 10000 names of material libraries"), "{message}");
 }
 
 #[test]

@@ -201,3 +201,28 @@ fn the_fixtures_are_read_or_refused() {
         assert!(super::refusal(load(file)).contains("no faces: a point cloud cannot be ray traced"), "{file}");
     }
 }
+
+/// A polygon with a notch, whose fan from the first corner overlaps itself; also where its vertices stand behind it.
+#[test]
+fn concave_polygons_are_covered_once() {
+    let points = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [4.0, 4.0, 0.0], [2.0, 1.0, 0.0], [0.0, 4.0, 0.0]];
+    let encoded = encode(&points, &[vec![0, 1, 2], vec![1, 2, 3, 4, 0], vec![0, 1, 2, 4]]);
+    let head = "ply\nformat ascii 1.0\n";
+    let faces = "element face 3\nproperty list uchar int vertex_indices\n";
+    let vertices = "element vertex 5\nproperty float x\nproperty float y\nproperty float z\n";
+    let behind = format!(
+        "{head}{faces}{vertices}end_header\n3 0 1 2\n5 1 2 3 4 0\n4 0 1 2 4\n0 0 0\n4 0 0\n4 4 0\n2 1 0\n0 4 0\n"
+    );
+    for bytes in [&encoded.ascii, &encoded.little, &encoded.big, behind.as_bytes()] {
+        let scene = load_bytes(bytes).unwrap();
+        let twice: Vec<f32> = (0..6)
+            .map(|i| {
+                let [a, b, c] = scene.corners(i);
+                (b - a).cross(c - a).z
+            })
+            .collect();
+        assert!(twice.iter().all(|&twice| twice > 0.0), "{twice:?}");
+        assert_eq!([&twice[..1], &twice[1..4], &twice[4..]].map(|part| part.iter().sum::<f32>()), [16.0, 20.0, 32.0]);
+        assert_eq!(indices(&scene)[4..], [[0, 1, 2], [0, 2, 4]], "what is convex is a fan");
+    }
+}
