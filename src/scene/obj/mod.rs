@@ -197,6 +197,7 @@ impl<'a> Reader<'a> {
             }
             let path = folder.join(name);
             if !path.is_file() {
+                super::sources::absent(&path);
                 self.warnings.add(&format!("material library {name} is not there: its materials are neutral grey"));
                 continue;
             }

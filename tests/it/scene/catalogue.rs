@@ -118,7 +118,7 @@ fn real_scenes_are_as_the_catalogue_says() {
             assert_eq!(&hash, expected, "{}", entry.name);
         }
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("obj");
-        if !scene::FORMATS.iter().any(|(known, _)| *known == extension) {
+        if !scene::FORMATS.iter().any(|(known, ..)| *known == extension) {
             eprintln!("{}: not loaded, no reader for .{extension}", entry.name);
             continue;
         }
