@@ -180,7 +180,8 @@ impl Entry {
     /// [`Error::Input`] if the file cannot be read.
     pub fn other_hash(&self, path: &Path) -> Result<Option<String>> {
         let Some(known) = self.known_hash(path) else { return Ok(None) };
-        let unreadable = |e| Error::file(path, None, format!("cannot be read: {e}"), "check the path and its permissions");
+        let unreadable =
+            |e| Error::file(path, None, format!("cannot be read: {e}"), "check the path and its permissions");
         if !path.is_file() {
             return Err(Error::file(path, None, "not a regular file", "name a file that holds a scene"));
         }

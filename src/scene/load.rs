@@ -151,7 +151,8 @@ fn check_settings(what: &str, settings: &str, files: &[PathBuf]) -> Result<()> {
     match settings.split(',').filter(|s| !s.is_empty()).map(key).find(|key| !heeded.contains(&key.as_str())) {
         None => Ok(()),
         Some(key) => {
-            let cache = if *extension == super::cache::EXTENSION { ": give it to `rtbench scenes convert`" } else { "" };
+            let cache =
+                if *extension == super::cache::EXTENSION { ": give it to `rtbench scenes convert`" } else { "" };
             let problem = format!("a .{extension} file has no option `{key}`{cache}");
             Err(Error::argument(what, problem, format!("its options are {}", heeded.join(", "))))
         }
@@ -175,7 +176,8 @@ fn read_folder(files: &[PathBuf], options: &Options) -> Result<Vec<(PathBuf, Sce
         .cloned()
         .collect();
     let (mut scenes, mut shared, mut seen) = (Vec::new(), false, HashSet::new());
-    for (file, (whole, (scene, sources))) in files.iter().zip(read).filter(|(_, (whole, _))| !included.contains(whole)) {
+    for (file, (whole, (scene, sources))) in files.iter().zip(read).filter(|(_, (whole, _))| !included.contains(whole))
+    {
         scenes.push((file.clone(), scene?));
         let parts = sources.into_iter().map(|source| source.path).filter(|path| *path != whole);
         for part in parts.filter(|path| format_of(path).is_some()) {

@@ -197,12 +197,8 @@ pub fn read(path: &Path, _: &Options) -> Result<Scene> {
         }
         Some(_) => {}
     }
-    let mut parts = Parts {
-        file: &file,
-        at: size_of::<Header>() as u64,
-        checksum: Checksum::default(),
-        extent: Extent::EMPTY,
-    };
+    let mut parts =
+        Parts { file: &file, at: size_of::<Header>() as u64, checksum: Checksum::default(), extent: Extent::EMPTY };
     let vertices: Vec<Vertex> = parts.next(header.vertices, Extent::of_vertices).map_err(unreadable)?;
     let triangles: Vec<Triangle> = parts.next(header.triangles, Extent::of_triangles).map_err(unreadable)?;
     let materials: Vec<Material> = parts.next(header.materials, |_| Extent::EMPTY).map_err(unreadable)?;

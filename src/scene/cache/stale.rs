@@ -81,9 +81,7 @@ pub fn changed(sources: &[Source]) -> Option<(&Path, &'static str)> {
         (_, false) => (!alone).then_some("is gone"),
         (Kind::File, true) => (!is_same_file(source)).then_some("has changed"),
         (Kind::Folder, true) => (!is_same_folder(source)).then_some("has other files"),
-        (Kind::Cache, true) => {
-            (content(&source.path).as_ref() != Some(&source.hash)).then_some("has changed")
-        }
+        (Kind::Cache, true) => (content(&source.path).as_ref() != Some(&source.hash)).then_some("has changed"),
     };
     sources.iter().find_map(|source| Some((source.path.as_path(), fate(source)?)))
 }
