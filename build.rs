@@ -36,7 +36,8 @@ fn main() {
 /// A hash (FNV-1a, 64 bits, hexadecimal) of everything that decides which scene a file gives: by it a cache is known to be
 /// stale. `DefaultHasher` would do, but may change with the compiler.
 fn readers() -> String {
-    let mut files = vec![PathBuf::from("src/math.rs"), PathBuf::from("Cargo.lock")];
+    let mut files =
+        vec![PathBuf::from("src/math.rs"), PathBuf::from("Cargo.lock"), PathBuf::from("scenes/catalog.toml")];
     let mut folders = vec![PathBuf::from("src/scene")];
     while let Some(folder) = folders.pop() {
         for path in std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {

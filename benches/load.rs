@@ -8,7 +8,7 @@
 mod common;
 
 use common::{median, sign_test_interval};
-use rtbench::scene::cache::{self, Source};
+use rtbench::scene::cache::{self, Sources};
 use rtbench::scene::{FORMATS, Options, load};
 use std::collections::BTreeMap;
 use std::hint::black_box;
@@ -22,7 +22,7 @@ fn main() {
         println!("only a test that this runs: use cargo bench --bench load");
         let scan = scratch.join("scan.rtb");
         let scene = common::scan(1000);
-        cache::write(&scene, &Source::default(), &scan).expect("written");
+        cache::write(&scene, &Sources::default(), &scan).expect("written");
         interleaved("scan", &[("cache", &scan)], 3);
     } else {
         let files = files();
@@ -37,8 +37,8 @@ fn main() {
         for (extension, path) in files.iter().filter(|(_, path)| large(path)) {
             let cached = scratch.join(format!("{extension}.rtb"));
             let what = path.to_str().expect("a printable path");
-            let source = Source::of(what, None).expect("readable");
-            cache::write(&load(what).expect("loads"), &source, &cached).expect("written");
+            let (scene, sources) = cache::load(what, None).expect("loads");
+            cache::write(&scene, &sources, &cached).expect("written");
             interleaved(what, &[("source", path), ("cache", &cached)], 11);
         }
     }
@@ -66,7 +66,7 @@ fn files() -> BTreeMap<String, PathBuf> {
     let mut largest = BTreeMap::new();
     for (_, path) in found {
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-        let reader = FORMATS.iter().find(|(name, _)| *name == extension).map(|(_, reader)| reader);
+        let reader = FORMATS.iter().find(|(name, ..)| *name == extension).map(|(_, reader, _)| reader);
         if reader.is_some_and(|reader| !largest.contains_key(&extension) && reader(&path, &Options::default()).is_ok())
         {
             largest.insert(extension, path);
@@ -107,7 +107,7 @@ fn made(folder: &Path) -> Vec<(&'static str, PathBuf)> {
 
 /// The reader alone, on one thread.
 fn throughput(extension: &str, path: &Path) {
-    let (_, reader) = FORMATS.iter().find(|(name, _)| *name == extension).expect("a known format");
+    let (_, reader, _) = FORMATS.iter().find(|(name, ..)| *name == extension).expect("a known format");
     let megabytes = path.metadata().expect("is here").len() as f64 / 1e6;
     let options = Options::default();
     let rate = |_| {

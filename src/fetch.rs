@@ -1,19 +1,20 @@
 //! Fetching a scene of the catalogue from its official source.
 //!
 //! 1. Download the archive into a file of its own beside the scene's place. What is there of an earlier attempt is
-//!    continued (`Range`), and so is a download whose connection breaks.
+//!    continued (`Range`), and so is a download whose connection breaks or falls silent.
 //! 2. Check its SHA-256, where the catalogue knows it, before anything is unpacked.
 //! 3. Unpack the one file that is the scene, under a temporary name. Every other entry is only looked at: an archive with
 //!    a path that leaves the folder is refused as a whole.
 //! 4. Check the file's SHA-256, where the catalogue knows it, before it gets its name. Nothing is ever overwritten.
 
 use crate::error::{Error, Result};
-use crate::scene::catalogue::{Archive, Entry};
+use crate::scene::catalogue::{Archive, Entry, sha256};
 use flate2::read::GzDecoder;
 use sha2::{Digest, Sha256};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::{Component, Path, PathBuf};
+use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::time::Duration;
 
 /// Most bytes of an archive, and of everything in it: far more than any scene of the catalogue, and less than a disk.
@@ -22,6 +23,9 @@ const MAX_UNPACKED: u64 = 1 << 33;
 
 /// Attempts in a row that bring nothing, before it is given up.
 const MAX_ATTEMPTS: u32 = 3;
+
+/// A server that sends nothing for so long is taken for gone.
+pub const SILENCE: Duration = Duration::from_secs(60);
 
 /// What happens, for whoever watches.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -56,10 +60,10 @@ pub fn fetch(entry: &Entry, folder: &Path, watch: &mut dyn FnMut(Event)) -> Resu
         return Err(Error::argument(&entry.name, problem, format!("get it by hand, from {}", entry.source)));
     };
     let known = entry.file.iter().find(|candidate| candidate.path == archive.to);
-    fetch_archive(&entry.name, archive, known.and_then(|k| k.sha256.as_deref()), folder, watch)
+    fetch_archive(&entry.name, archive, known.and_then(|k| k.sha256.as_deref()), folder, SILENCE, watch)
 }
 
-/// Fetches one file of an archive; `sha256` is that file's, if it is known.
+/// Fetches one file of an archive; `sha256` is that file's, if it is known; `silence` is how long a server may send nothing.
 ///
 /// # Errors
 /// As [`fetch`].
@@ -68,6 +72,7 @@ pub fn fetch_archive(
     archive: &Archive,
     sha256: Option<&str>,
     folder: &Path,
+    silence: Duration,
     watch: &mut dyn FnMut(Event),
 ) -> Result<(PathBuf, Verified)> {
     let target = folder.join(&archive.to);
@@ -77,7 +82,7 @@ pub fn fetch_archive(
     let home = target.parent().unwrap_or(folder);
     fs::create_dir_all(home).map_err(|e| Error::output(home, e))?;
     let download = home.join(format!(".{name}.tar.gz.part"));
-    download_to(&archive.url, &download, watch)?;
+    download_to(&archive.url, &download, silence, watch)?;
     if let Some(expected) = &archive.sha256 {
         let found = hash_file(&download)?;
         if found != *expected {
@@ -115,20 +120,20 @@ fn wrong_hash(url: &str, what: &str, found: &str, expected: &str) -> Error {
 }
 
 /// Downloads until all is here, continuing what is there.
-fn download_to(url: &str, path: &Path, watch: &mut dyn FnMut(Event)) -> Result<()> {
+fn download_to(url: &str, path: &Path, silence: Duration, watch: &mut dyn FnMut(Event)) -> Result<()> {
     let config = ureq::Agent::config_builder()
         // A redirect must not lead from a protected address to an unprotected one.
         .https_only(url.starts_with("https://"))
         .http_status_as_error(false)
         .timeout_connect(Some(Duration::from_secs(30)))
-        .timeout_recv_response(Some(Duration::from_secs(60)))
+        .timeout_recv_response(Some(silence))
         .user_agent(concat!("rtbench/", env!("CARGO_PKG_VERSION")))
         .build();
     let agent = ureq::Agent::new_with_config(config);
     let mut failures = 0;
     loop {
         let before = fs::metadata(path).map_or(0, |m| m.len());
-        match attempt(&agent, url, path, before, watch)? {
+        match attempt(&agent, url, path, before, silence, watch)? {
             Attempt::Done => return Ok(()),
             Attempt::Broken(reason) => {
                 let progress = fs::metadata(path).map_or(0, |m| m.len()) > before;
@@ -151,7 +156,14 @@ enum Attempt {
 }
 
 /// One request, from byte `have` on.
-fn attempt(agent: &ureq::Agent, url: &str, path: &Path, have: u64, watch: &mut dyn FnMut(Event)) -> Result<Attempt> {
+fn attempt(
+    agent: &ureq::Agent,
+    url: &str,
+    path: &Path,
+    have: u64,
+    silence: Duration,
+    watch: &mut dyn FnMut(Event),
+) -> Result<Attempt> {
     let mut request = agent.get(url);
     if have > 0 {
         request = request.header("Range", format!("bytes={have}-"));
@@ -200,22 +212,43 @@ fn attempt(agent: &ureq::Agent, url: &str, path: &Path, have: u64, watch: &mut d
     file.set_len(start).map_err(output)?;
     io::Seek::seek(&mut file, io::SeekFrom::Start(start)).map_err(output)?;
     let mut body = response.into_body().into_reader();
-    let (mut done, mut buffer) = (start, vec![0; 1 << 16]);
+    // ureq limits the time of a whole body only. So a thread of its own reads it, and is left behind if nothing comes: it
+    // ends when the connection does.
+    let (send, pieces) = sync_channel::<io::Result<Vec<u8>>>(16);
+    std::thread::spawn(move || {
+        let mut buffer = vec![0; 1 << 16];
+        loop {
+            let piece = match body.read(&mut buffer) {
+                Ok(0) => return,
+                Ok(read) => Ok(buffer[..read].to_vec()),
+                Err(e) if e.kind() == io::ErrorKind::Interrupted => continue,
+                Err(e) => Err(e),
+            };
+            let last = piece.is_err();
+            if send.send(piece).is_err() || last {
+                return;
+            }
+        }
+    });
+    let mut done = start;
     watch(Event::Downloaded(done, total));
     loop {
-        let read = match body.read(&mut buffer) {
-            Ok(0) => break,
-            Ok(read) => read,
-            Err(e) if e.kind() == io::ErrorKind::Interrupted => continue,
-            Err(e) => return Ok(Attempt::Broken(one_line(&e))),
+        let piece = match pieces.recv_timeout(silence) {
+            Ok(Ok(piece)) => piece,
+            Ok(Err(e)) => return Ok(Attempt::Broken(one_line(&e))),
+            Err(RecvTimeoutError::Disconnected) => break,
+            Err(RecvTimeoutError::Timeout) => {
+                let reason = format!("the server has sent nothing for {} s", silence.as_secs_f64());
+                return Ok(Attempt::Broken(reason));
+            }
         };
-        done += read as u64;
+        done += piece.len() as u64;
         if done > MAX_ARCHIVE {
             discard(path);
             let problem = format!("the archive has more than {MAX_ARCHIVE} bytes");
             return Err(Error::argument(url, problem, "it cannot be the right one"));
         }
-        file.write_all(&buffer[..read]).map_err(output)?;
+        file.write_all(&piece).map_err(output)?;
         watch(Event::Downloaded(done, total));
     }
     match total {
@@ -276,7 +309,5 @@ fn copy_hashed(
 }
 
 fn hash_file(path: &Path) -> Result<String> {
-    let unreadable = |e: io::Error| Error::file(path, None, format!("cannot be read: {e}"), "try again");
-    let mut file = File::open(path).map_err(unreadable)?;
-    copy_hashed(&mut file, io::sink(), unreadable, unreadable)
+    sha256(path).map_err(|e| Error::file(path, None, format!("cannot be read: {e}"), "try again"))
 }

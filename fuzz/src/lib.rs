@@ -46,7 +46,7 @@ fn read<T>(file_bytes: usize, reader: impl FnOnce() -> Result<T>) -> Option<T> {
 
 /// Loads these bytes as a scene of that extension.
 pub fn scene(extension: &str, bytes: &[u8]) {
-    assert!(FORMATS.iter().any(|(known, _)| *known == extension), "there is no reader of .{extension}");
+    assert!(FORMATS.iter().any(|(known, ..)| *known == extension), "there is no reader of .{extension}");
     let path = file(&format!("scene.{extension}"), bytes);
     if let Some(scene) = read(bytes.len(), || scene::load(&path)) {
         scene.check().expect("what is read is sound");

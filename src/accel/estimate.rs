@@ -3,6 +3,7 @@
 use super::Record;
 use super::bvh::BvhNode;
 use super::grid::Cell;
+use super::grid_build::{self, Layout};
 use super::kdtree::KdNode;
 use crate::scene::Scene;
 
@@ -25,7 +26,7 @@ const BVH_NODES: f64 = 0.66;
 
 /// Estimates for grid, kd-tree and BVH with their default options.
 ///
-/// The grid's cells follow from the resolution rule. A box with edges e in cells of edge s overlaps on average
+/// The grid's cells follow from the builder's own rule and limits. A box with edges e in cells of edge s overlaps on average
 /// `(1 + ex / s) (1 + ey / s) (1 + ez / s)` of them, wherever it lies; the sum of that is the estimate of its records.
 pub fn estimates(scene: &Scene) -> [Estimate; 3] {
     let triangles = scene.triangles.len() as f64;
@@ -46,20 +47,23 @@ pub fn estimates(scene: &Scene) -> [Estimate; 3] {
     ]
 }
 
-/// Cells and records of a grid by the rule `floor(4 n^(1/4))` on the shortest axis.
+/// Cells and records of a grid as the builder lays it out, limits included.
 fn grid(scene: &Scene) -> (f64, f64) {
-    let extent = scene.bounds().extent().as_dvec3().to_array();
-    let shortest = extent.into_iter().filter(|&e| e > 0.0).fold(f64::INFINITY, f64::min);
-    if !shortest.is_finite() {
-        return (1.0, scene.triangles.len() as f64);
+    let count = scene.triangles.len() - scene.degenerate_triangles.min(scene.triangles.len());
+    let bounds = scene.bounds();
+    let mut layout = Layout::by_rule(&bounds, count, grid_build::Config::default().factor);
+    loop {
+        let edge = f64::from(layout.cell_size);
+        let overlapped = |index| {
+            let [a, b, c] = scene.corners(index);
+            let size = (a.max(b).max(c) - a.min(b).min(c)).as_dvec3().to_array();
+            // No more than there are on an axis; a flat scene has one.
+            (0..3).map(|axis| (1.0 + size[axis] / edge).min(f64::from(layout.resolution[axis]))).product::<f64>()
+        };
+        let records: f64 = (0..scene.triangles.len() as u32).map(overlapped).sum();
+        if records <= grid_build::record_limit(count).max(scene.triangles.len() as u64) as f64 {
+            return (layout.cell_count() as f64, records);
+        }
+        layout = layout.coarser(&bounds);
     }
-    let edge = shortest / (4.0 * (scene.triangles.len() as f64).powf(0.25)).floor().max(1.0);
-    let cells: f64 = extent.into_iter().map(|e| (e / edge).ceil().max(1.0)).product();
-    let overlapped = |index| {
-        let [a, b, c] = scene.corners(index);
-        let size = (a.max(b).max(c) - a.min(b).min(c)).as_dvec3().to_array();
-        // No more than there are on an axis; a flat scene has one.
-        (0..3).map(|axis| (1.0 + size[axis] / edge).min((extent[axis] / edge).ceil().max(1.0))).product::<f64>()
-    };
-    (cells, (0..scene.triangles.len() as u32).map(overlapped).sum())
 }

@@ -38,7 +38,7 @@ fn cell_limit(triangles: usize) -> u64 {
 
 /// ... and at most this many records. The published scenes need at most 100 cells and 23 records per triangle; without
 /// the limits a nearly flat scene, or a thousand large triangles in the same place, would take all memory.
-fn record_limit(triangles: usize) -> u64 {
+pub(super) fn record_limit(triangles: usize) -> u64 {
     (256 * triangles as u64).clamp(1 << 16, 1 << 26).max(triangles as u64)
 }
 
@@ -114,22 +114,22 @@ fn lay_out(scene: &Scene, config: &Config, prims: &[Prim], bounds: &Aabb) -> Res
         if by_hand || total <= record_limit(prims.len()) {
             return Ok((layout, ranges, total));
         }
-        layout = Layout::with_edge(bounds, f64::from(layout.cell_size) * 1.25, [None; 3]);
+        layout = layout.coarser(bounds);
     }
 }
 
 /// Where the cells are.
-struct Layout {
+pub(super) struct Layout {
     min: Vec3,
-    resolution: [u32; 3],
-    cell_size: f32,
+    pub resolution: [u32; 3],
+    pub cell_size: f32,
     /// For first guesses only.
     inverse: f64,
 }
 
 impl Layout {
     /// `floor(factor n^(1/4))` cubes on the shortest axis that has any extent at all.
-    fn by_rule(bounds: &Aabb, triangles: usize, factor: f64) -> Layout {
+    pub fn by_rule(bounds: &Aabb, triangles: usize, factor: f64) -> Layout {
         let extent = extent(bounds);
         let cells = (factor * (triangles as f64).powf(0.25)).floor().clamp(1.0, 1e6) as u32;
         let shortest = (0..3).filter(|&a| extent[a] > 0.0).min_by(|&a, &b| extent[a].total_cmp(&extent[b]));
@@ -144,6 +144,11 @@ impl Layout {
             fixed = [None; 3];
         }
         Layout::with_edge(bounds, edge, fixed)
+    }
+
+    /// The next one to try where there are too many records.
+    pub fn coarser(&self, bounds: &Aabb) -> Layout {
+        Layout::with_edge(bounds, f64::from(self.cell_size) * 1.25, [None; 3])
     }
 
     /// Cells set by hand: the first axis that is set (and has extent) gives the edge length.
@@ -179,7 +184,7 @@ impl Layout {
         Layout { min: bounds.min, resolution, cell_size, inverse: 1.0 / f64::from(cell_size) }
     }
 
-    fn cell_count(&self) -> u64 {
+    pub fn cell_count(&self) -> u64 {
         self.resolution.iter().map(|&r| u64::from(r)).product()
     }
 

@@ -2,6 +2,7 @@
 
 use super::output;
 use crate::error::Result;
+use crate::scene::cache::{self, Sources};
 use crate::scene::{self, Scene};
 use clap::Args;
 use std::path::PathBuf;
@@ -13,7 +14,7 @@ pub struct LibraryArguments {
     #[arg(long, value_name = "FOLDER")]
     scenes_dir: Option<PathBuf>,
     /// Moment at which the moving geometry of scene files is frozen, as FILE:time=T
-    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = moment)]
     scene_time: Option<f64>,
 }
 
@@ -23,9 +24,13 @@ impl LibraryArguments {
         self.scenes_dir.clone().or_else(|| std::env::var_os("RTBENCH_SCENES").map(PathBuf::from))
     }
 
-    /// The scene at the moment that was asked for, if one was.
+    /// The scene at the moment that was asked for, if one was; a note on standard error where that means nothing.
     pub fn at_time(&self, what: &str) -> String {
-        self.scene_time.map_or_else(|| what.to_owned(), |time| scene::at_time(what, time))
+        let Some(time) = self.scene_time else { return what.to_owned() };
+        if scene::has_no_time(what) {
+            output::note(&format!("{what}: --scene-time changes nothing: nothing moves in this scene"));
+        }
+        scene::at_time(what, time)
     }
 
     /// Loads a scene and says on standard error what its reader wants the user to know.
@@ -34,9 +39,30 @@ impl LibraryArguments {
     /// The scene's.
     pub fn load(&self, what: &str) -> Result<Scene> {
         let scene = scene::load_in(&self.at_time(what), self.folder().as_deref())?;
-        for warning in &scene.warnings {
-            output::note(&format!("{}: {warning}", scene.name));
-        }
+        tell(&scene);
         Ok(scene)
+    }
+
+    /// The same, and what files the scene is made from.
+    ///
+    /// # Errors
+    /// The scene's.
+    pub fn load_with_sources(&self, what: &str) -> Result<(Scene, Sources)> {
+        let (scene, sources) = cache::load(&self.at_time(what), self.folder().as_deref())?;
+        tell(&scene);
+        Ok((scene, sources))
+    }
+}
+
+fn tell(scene: &Scene) {
+    for warning in &scene.warnings {
+        output::note(&format!("{}: {warning}", scene.name));
+    }
+}
+
+fn moment(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(time) if f64::is_finite(time) => Ok(time),
+        _ => Err("give a finite number, a moment of the file's animation".into()),
     }
 }

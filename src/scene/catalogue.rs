@@ -5,6 +5,9 @@ use super::{Light, did_you_mean, procedural};
 use crate::error::{Error, Result};
 use glam::Vec3;
 use serde::Deserialize;
+use sha2::{Digest, Sha256};
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
@@ -127,6 +130,20 @@ pub fn locate(entry: &Entry, folder: &Path) -> Option<PathBuf> {
     entry.file.iter().map(|candidate| folder.join(&candidate.path)).find(|path| path.exists())
 }
 
+/// The SHA-256 of a file, hexadecimal.
+///
+/// # Errors
+/// It cannot be read.
+pub fn sha256(path: &Path) -> std::io::Result<String> {
+    let (mut file, mut hasher, mut buffer) = (File::open(path)?, Sha256::new(), vec![0; 1 << 18]);
+    loop {
+        match file.read(&mut buffer)? {
+            0 => return Ok(hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()),
+            read => hasher.update(&buffer[..read]),
+        }
+    }
+}
+
 /// The names that can be given to `--scene`: built-in scenes and the catalogue.
 pub(super) fn all_names() -> Vec<&'static str> {
     let built_in = procedural::list().into_iter().map(|info| info.name);
@@ -150,6 +167,26 @@ impl Entry {
             Some(path) => Ok(path),
             None => absent(format!("{} has no {}", folder.display(), self.file[0].path.display())),
         }
+    }
+
+    /// The SHA-256 that the catalogue knows for the candidate at this path, if it does.
+    pub fn known_hash(&self, path: &Path) -> Option<&str> {
+        self.file.iter().find(|candidate| path.ends_with(&candidate.path))?.sha256.as_deref()
+    }
+
+    /// The SHA-256 of the candidate at this path, if it is not the one that the catalogue knows.
+    ///
+    /// # Errors
+    /// [`Error::Input`] if the file cannot be read.
+    pub fn other_hash(&self, path: &Path) -> Result<Option<String>> {
+        let Some(known) = self.known_hash(path) else { return Ok(None) };
+        let unreadable =
+            |e| Error::file(path, None, format!("cannot be read: {e}"), "check the path and its permissions");
+        if !path.is_file() {
+            return Err(Error::file(path, None, "not a regular file", "name a file that holds a scene"));
+        }
+        let found = sha256(path).map_err(unreadable)?;
+        Ok((found != known).then_some(found))
     }
 
     /// What to do about an absent scene.

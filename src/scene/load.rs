@@ -1,8 +1,9 @@
 //! Loading by name: files by their extension, folders and lists of files as one scene, built-in scenes, the catalogue.
 
 use super::extent::Extent;
-use super::{FORMATS, Material, Options, Reader, Scene, Triangle, catalogue, did_you_mean, procedural};
+use super::{FORMATS, Material, Options, Reader, Scene, Triangle, catalogue, did_you_mean, procedural, sources};
 use crate::error::{Error, Result};
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 /// Loads a scene that needs no folder of scenes: see [`load_in`].
@@ -33,10 +34,8 @@ pub fn load_in(what: &str, folder: Option<&Path>) -> Result<Scene> {
     let built_in = is_built_in(what);
     if !built_in && (reader_of(path).is_some() || name.contains(['/', std::path::MAIN_SEPARATOR]) || path.exists()) {
         let options = Options::parse(what, settings)?;
-        let mut scene = read(name, &options)?;
-        if scene.name.is_empty() {
-            scene.name = format!("{}{}", stem(name), options.suffix());
-        }
+        let mut scene = read(what, name, settings, &options)?;
+        scene.name = with_suffix(&scene.name, &options.suffix(&Options::default()));
         return finish(scene, name, &options);
     }
     if !built_in {
@@ -56,34 +55,36 @@ fn is_built_in(what: &str) -> bool {
     procedural::list().iter().any(|info| info.name == bare)
 }
 
-/// The same scene with its moving geometry frozen at a time: `time=...` among the options behind its name. A built-in
-/// scene, and a scene for which a time is given already, stay as they are.
+/// The same scene with its moving geometry frozen at a time: `time=...` among the options behind its name. What cannot
+/// move ([`has_no_time`]), and a scene for which a time is given already, stay as they are.
 pub fn at_time(what: &str, time: f64) -> String {
     let (name, settings) = split_settings(what);
-    if is_built_in(what) || settings.split(',').any(|setting| setting.starts_with("time=")) {
+    if has_no_time(what) || settings.split(',').any(|setting| setting.starts_with("time=")) {
         return what.to_owned();
     }
     let comma = if settings.is_empty() { "" } else { "," };
     format!("{name}:{settings}{comma}time={time}")
 }
 
-/// The file, folder or list behind `what`; `None` for a built-in scene.
-pub(super) fn file_behind(what: &str, folder: Option<&Path>) -> Result<Option<String>> {
-    let (name, _) = split_settings(what);
-    if let Some(entry) = catalogue::find(name) {
-        return Ok(Some(entry.path_in(folder)?.to_string_lossy().into_owned()));
-    }
-    Ok((!is_built_in(what)).then(|| name.to_owned()))
+/// True for built-in scenes, and for scenes of the catalogue whose format knows no time.
+pub fn has_no_time(what: &str) -> bool {
+    let timed = |path: &Path| format_of(path).is_some_and(|(_, _, heeded)| heeded.contains(&"time"));
+    let entry = catalogue::find(split_settings(what).0);
+    is_built_in(what) || entry.is_some_and(|entry| !entry.file.iter().any(|candidate| timed(&candidate.path)))
 }
 
 /// A scene of the catalogue: the file as its entry says, and what the user sets on top.
 fn load_entry(what: &str, entry: &catalogue::Entry, settings: &str, folder: Option<&Path>) -> Result<Scene> {
     let path = entry.path_in(folder)?;
+    let base = Options::parse(what, &entry.options)?;
     let options = Options::parse(what, &format!("{},{settings}", entry.options))?;
     let name = path.to_string_lossy();
-    let mut scene = read(&name, &options)?;
-    scene.name = format!("{}{}", entry.name, Options::parse(what, settings)?.suffix());
+    let mut scene = read(what, &name, settings, &options)?;
+    scene.name = format!("{}{}", entry.name, options.suffix(&base));
     let mut scene = finish(scene, &name, &options)?;
+    if let Some(found) = entry.other_hash(&path)? {
+        scene.warnings.push(format!("not the catalogue's file: the SHA-256 of {} is {found}", path.display()));
+    }
     if scene.lights.is_empty() {
         scene.lights = entry.lights();
     }
@@ -115,43 +116,97 @@ fn finish(mut scene: Scene, place: &str, options: &Options) -> Result<Scene> {
     Ok(scene)
 }
 
-/// Reads one file, a folder, or files joined by `+`.
-fn read(name: &str, options: &Options) -> Result<Scene> {
+/// Reads one file, a folder, or files joined by `+`, and names the scene after them (without options).
+fn read(what: &str, name: &str, settings: &str, options: &Options) -> Result<Scene> {
     let files = parts(name)?;
-    let [first, others @ ..] = files.as_slice() else {
-        let known = extensions();
-        return Err(Error::file(
-            Path::new(name),
-            None,
-            "the folder holds no file of a known format",
-            format!("known extensions: {known}"),
-        ));
+    check_settings(what, settings, &files)?;
+    let whole = Path::new(name);
+    let folder = files.first() != Some(&whole.to_owned()) && whole.is_dir();
+    if folder {
+        sources::folder(whole, &files);
+    }
+    let scenes = if folder { read_folder(&files, options)? } else { read_list(files, options)? };
+    let names: Vec<String> = scenes.iter().map(|(file, scene)| own_name(file, scene)).collect();
+    let taken: Vec<&str> = scenes.iter().filter_map(|(file, _)| file.file_name()?.to_str()).collect();
+    let taken = (folder && 1 < taken.len()).then(|| format!("made of {}", taken.join(", ")));
+    let mut scenes = scenes.into_iter().map(|(_, scene)| scene);
+    let Some(mut scene) = scenes.next() else {
+        let mend = format!("known extensions: {}", extensions());
+        return Err(Error::file(whole, None, "the folder holds no file of a known format", mend));
     };
-    let mut scene = read_one(first, options)?;
-    if !others.is_empty() {
-        scene.name.clear();
-    }
-    for file in others {
-        append(&mut scene, read_one(file, options)?);
-    }
+    scenes.for_each(|other| append(&mut scene, other));
+    scene.name = if folder { folder_name(whole) } else { names.join("+") };
+    scene.warnings.extend(taken);
     Ok(scene)
 }
 
+/// Refuses options that none of the files' formats heeds.
+fn check_settings(what: &str, settings: &str, files: &[PathBuf]) -> Result<()> {
+    let formats: Vec<_> = files.iter().filter_map(|file| format_of(file)).collect();
+    let [(extension, ..), ..] = formats.as_slice() else { return Ok(()) };
+    let mut heeded = Options::COMMON.to_vec();
+    heeded.extend(formats.iter().flat_map(|(_, _, heeded)| heeded.iter()));
+    heeded.dedup();
+    let key = |setting: &str| setting.split('=').next().unwrap_or(setting).to_owned();
+    match settings.split(',').filter(|s| !s.is_empty()).map(key).find(|key| !heeded.contains(&key.as_str())) {
+        None => Ok(()),
+        Some(key) => {
+            let cache =
+                if *extension == super::cache::EXTENSION { ": give it to `rtbench scenes convert`" } else { "" };
+            let problem = format!("a .{extension} file has no option `{key}`{cache}");
+            Err(Error::argument(what, problem, format!("its options are {}", heeded.join(", "))))
+        }
+    }
+}
+
+fn read_list(files: Vec<PathBuf>, options: &Options) -> Result<Vec<(PathBuf, Scene)>> {
+    let scene = |file: PathBuf| read_one(&file, options).map(|scene| (file, scene));
+    files.into_iter().map(scene).collect()
+}
+
+/// Reads all files of a folder but those that another of them includes: these are in the scene already, where and as often
+/// as that file wants them.
+fn read_folder(files: &[PathBuf], options: &Options) -> Result<Vec<(PathBuf, Scene)>> {
+    let read = |file: &PathBuf| (sources::whole(file), sources::record(false, || read_one(file, options)));
+    let read: Vec<_> = files.iter().map(read).collect();
+    // A file that is broken speaks for itself alone: of two that include each other, none is left out.
+    let sound = read.iter().filter(|(_, (scene, _))| scene.is_ok());
+    let included: HashSet<PathBuf> = sound
+        .flat_map(|(file, (_, sources))| sources.iter().map(|source| &source.path).filter(move |path| *path != file))
+        .cloned()
+        .collect();
+    let (mut scenes, mut shared, mut seen) = (Vec::new(), false, HashSet::new());
+    for (file, (whole, (scene, sources))) in files.iter().zip(read).filter(|(_, (whole, _))| !included.contains(whole))
+    {
+        scenes.push((file.clone(), scene?));
+        let parts = sources.into_iter().map(|source| source.path).filter(|path| *path != whole);
+        for part in parts.filter(|path| format_of(path).is_some()) {
+            shared |= !seen.insert(part);
+        }
+    }
+    if shared && let Some((_, scene)) = scenes.first_mut() {
+        let warning = "several files of the folder include the same ones: if they are versions of one scene, name one";
+        scene.warnings.push(warning.into());
+    }
+    Ok(scenes)
+}
+
 /// The files that make one scene, in the order of their names for a folder, as given for a list.
-pub(super) fn parts(name: &str) -> Result<Vec<PathBuf>> {
+fn parts(name: &str) -> Result<Vec<PathBuf>> {
     let path = Path::new(name);
     if !path.exists() && name.contains('+') {
         return Ok(name.split('+').map(PathBuf::from).collect());
     }
     // A folder called like a file is told so by the reader.
-    if !path.is_dir() || reader_of(path).is_some() {
-        return Ok(vec![path.to_owned()]);
-    }
+    if path.is_dir() && reader_of(path).is_none() { files_of_folder(path) } else { Ok(vec![path.to_owned()]) }
+}
+
+/// The files of a folder that make a scene, in the order of their names. A cache of the folder's own scene may lie in it.
+pub(super) fn files_of_folder(path: &Path) -> Result<Vec<PathBuf>> {
     let fault = |e: std::io::Error| Error::file(path, None, format!("cannot be read: {e}"), "check its permissions");
     let mut files = Vec::new();
     for entry in std::fs::read_dir(path).map_err(fault)? {
         let file = entry.map_err(fault)?.path();
-        // A cache of the folder's own scene may lie in it.
         if file.is_file() && !is_cache(&file) && reader_of(&file).is_some() {
             files.push(file);
         }
@@ -161,31 +216,34 @@ pub(super) fn parts(name: &str) -> Result<Vec<PathBuf>> {
 }
 
 fn read_one(path: &Path, options: &Options) -> Result<Scene> {
-    let Some(reader) = reader_of(path) else {
-        if !path.exists() {
-            return Err(Error::file(path, None, "no such file", "check the path"));
-        }
-        return Err(Error::file(
-            path,
-            None,
-            "the format is unknown: formats are told by the file's extension",
-            format!("known extensions: {}", extensions()),
-        ));
+    if let Some(reader) = reader_of(path) {
+        return reader(path, options);
+    }
+    let known = || format!("known extensions: {}", extensions());
+    let (problem, mend) = match (path.exists(), path.is_dir()) {
+        (false, _) => ("no such file", "check the path".to_owned()),
+        (_, true) => ("it is a folder, and a list is one of files", "name its files, or the folder alone".to_owned()),
+        _ => ("the format is unknown: formats are told by the file's extension", known()),
     };
-    reader(path, options)
+    Err(Error::file(path, None, problem, mend))
 }
 
 fn extensions() -> String {
-    FORMATS.iter().map(|(extension, _)| *extension).collect::<Vec<_>>().join(", ")
+    FORMATS.iter().map(|(extension, ..)| *extension).collect::<Vec<_>>().join(", ")
 }
 
 fn is_cache(path: &Path) -> bool {
     path.is_file() && path.extension().is_some_and(|e| e.eq_ignore_ascii_case(super::cache::EXTENSION))
 }
 
-fn reader_of(path: &Path) -> Option<Reader> {
+/// The line of a file's format in [`FORMATS`].
+fn format_of(path: &Path) -> Option<&'static (&'static str, Reader, &'static [&'static str])> {
     let extension = path.extension()?.to_str()?.to_ascii_lowercase();
-    FORMATS.iter().find(|(known, _)| *known == extension).map(|(_, reader)| *reader)
+    FORMATS.iter().find(|(known, ..)| *known == extension)
+}
+
+fn reader_of(path: &Path) -> Option<Reader> {
+    format_of(path).map(|(_, reader, _)| *reader)
 }
 
 /// Puts a scene behind another; the first camera and background stay.
@@ -212,14 +270,26 @@ fn append(scene: &mut Scene, mut other: Scene) {
     scene.camera = scene.camera.take().or(other.camera);
 }
 
-/// The stem of a file's or folder's name; of a list's first.
-fn stem(name: &str) -> String {
-    let first = Path::new(name.split('+').next().unwrap_or(name));
-    let path = if Path::new(name).exists() { Path::new(name) } else { first };
-    let stem = if path.is_dir() { path.file_name() } else { path.file_stem() };
-    match stem {
+/// What a file's scene is called: as it says itself (a cache does), or like the file.
+fn own_name(file: &Path, scene: &Scene) -> String {
+    match file.file_stem() {
+        _ if !scene.name.is_empty() => scene.name.clone(),
         Some(stem) => stem.to_string_lossy().into_owned(),
         None => "scene".into(),
+    }
+}
+
+/// What a folder's scene is called, `.` being as good as its name.
+fn folder_name(folder: &Path) -> String {
+    let whole = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+    folder.file_name().or(whole.file_name()).map_or("scene".into(), |name| name.to_string_lossy().into_owned())
+}
+
+/// A name and more options behind it; that of a cache may have some already.
+fn with_suffix(name: &str, suffix: &str) -> String {
+    match suffix.strip_prefix(':') {
+        Some(more) if name.contains(':') => format!("{name},{more}"),
+        _ => format!("{name}{suffix}"),
     }
 }
 

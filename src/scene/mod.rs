@@ -19,6 +19,7 @@ mod options;
 pub mod ply;
 pub mod polygon;
 pub mod procedural;
+mod sources;
 mod suggest;
 pub mod text;
 
@@ -27,7 +28,7 @@ use crate::math::{Aabb, Vertex};
 use bytemuck::{Pod, Zeroable};
 use extent::Extent;
 use glam::{Vec3, Vec3A};
-pub use load::{at_time, load, load_in};
+pub use load::{at_time, has_no_time, load, load_in};
 pub use options::{MAX_SEGMENTS, Options, Up};
 pub use procedural::{Parameter, SceneInfo, list};
 use std::path::Path;
@@ -41,19 +42,23 @@ pub const MAX_ELEMENTS: usize = 1 << 27;
 /// triangles; [`load`] does.
 pub type Reader = fn(&Path, &Options) -> Result<Scene>;
 
-/// Readers by file extension (lower case).
-pub const FORMATS: &[(&str, Reader)] = &[
-    ("ply", |path, _| ply::read(path)),
-    ("aff", aff::read),
-    ("nff", aff::read),
-    ("mgf", mgf::read),
-    ("iv", inventor::read),
-    ("wrl", inventor::read),
-    ("obj", obj::read),
-    ("gltf", gltf::read),
-    ("glb", gltf::read),
+/// What BART's files heed.
+const AFF: &[&str] = &["time", "segments", "cones", "camera", "outside"];
+
+/// Readers by file extension (lower case), and which options they heed beside those that every file takes
+/// ([`Options::COMMON`]).
+pub const FORMATS: &[(&str, Reader, &[&str])] = &[
+    ("ply", |path, _| ply::read(path), &[]),
+    ("aff", aff::read, AFF),
+    ("nff", aff::read, AFF),
+    ("mgf", mgf::read, &["segments", "outside"]),
+    ("iv", inventor::read, &["segments", "outside"]),
+    ("wrl", inventor::read, &["segments", "outside"]),
+    ("obj", obj::read, &["lamp", "outside"]),
+    ("gltf", gltf::read, &["camera", "outside"]),
+    ("glb", gltf::read, &["camera", "outside"]),
     // The cache of any of them
-    (cache::EXTENSION, cache::read),
+    (cache::EXTENSION, cache::read, &[]),
 ];
 
 /// One triangle: three vertices and a material.
@@ -313,7 +318,7 @@ impl Scene {
 /// The bytes of a file.
 fn read_file(path: &Path) -> Result<Vec<u8>> {
     let fault = |problem: String, mend| Error::file(path, None, problem, mend);
-    match std::fs::metadata(path) {
+    let metadata = match std::fs::metadata(path) {
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
             return Err(fault("no such file".into(), "check the path"));
         }
@@ -321,7 +326,9 @@ fn read_file(path: &Path) -> Result<Vec<u8>> {
         Ok(metadata) if !metadata.is_file() => {
             return Err(fault("not a regular file".into(), "name a file that holds a scene"));
         }
-        Ok(_) => {}
-    }
-    std::fs::read(path).map_err(|e| fault(format!("cannot be read: {e}"), "check its permissions"))
+        Ok(metadata) => metadata,
+    };
+    let content = std::fs::read(path).map_err(|e| fault(format!("cannot be read: {e}"), "check its permissions"))?;
+    sources::read(path, &metadata, &content);
+    Ok(content)
 }

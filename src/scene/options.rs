@@ -60,6 +60,9 @@ impl Options {
     /// The names of all options.
     pub const KEYS: [&str; 9] = ["time", "segments", "cones", "outside", "up", "scale", "camera", "fov", "lamp"];
 
+    /// Those that every file takes; a file's format may heed more ([`super::FORMATS`]).
+    pub const COMMON: [&str; 3] = ["up", "scale", "fov"];
+
     /// Reads `key=value,...`; `what` stands in errors.
     ///
     /// # Errors
@@ -116,36 +119,21 @@ impl Options {
         Ok(options)
     }
 
-    /// The options that differ from their defaults, `:key=value,...`, or nothing.
-    pub fn suffix(&self) -> String {
+    /// The options that differ from those of `base`, `:key=value,...`, or nothing.
+    pub fn suffix(&self, base: &Options) -> String {
         let mut set = Vec::new();
-        if let Some(time) = self.time {
-            set.push(format!("time={time}"));
-        }
-        if let Some(segments) = self.segments {
-            set.push(format!("segments={segments}"));
-        }
-        if !self.cones {
-            set.push("cones=no".into());
-        }
-        if self.outside {
-            set.push("outside=yes".into());
-        }
-        if self.up == Up::Z {
-            set.push("up=z".into());
-        }
-        if self.scale != 1.0 {
-            set.push(format!("scale={}", self.scale));
-        }
-        if let Some(camera) = &self.camera {
-            set.push(format!("camera={camera}"));
-        }
-        if let Some(fov) = self.fov {
-            set.push(format!("fov={fov}"));
-        }
-        if let Some(lamp) = &self.lamp {
-            set.push(format!("lamp={lamp}"));
-        }
+        let mut text = |key: &str, value: Option<String>| set.extend(value.map(|value| format!("{key}={value}")));
+        let yes = |yes: bool| if yes { "yes".to_owned() } else { "no".to_owned() };
+        text("time", self.time.filter(|_| self.time != base.time).map(|time| time.to_string()));
+        text("segments", self.segments.filter(|_| self.segments != base.segments).map(|n| n.to_string()));
+        text("cones", (self.cones != base.cones).then(|| yes(self.cones)));
+        text("outside", (self.outside != base.outside).then(|| yes(self.outside)));
+        let up = if self.up == Up::Z { "z" } else { "y" };
+        text("up", (self.up != base.up).then(|| up.to_owned()));
+        text("scale", (self.scale != base.scale).then(|| self.scale.to_string()));
+        text("camera", self.camera.clone().filter(|_| self.camera != base.camera));
+        text("fov", self.fov.filter(|_| self.fov != base.fov).map(|fov| fov.to_string()));
+        text("lamp", self.lamp.clone().filter(|_| self.lamp != base.lamp));
         if set.is_empty() { String::new() } else { format!(":{}", set.join(",")) }
     }
 }

@@ -433,7 +433,12 @@ fn the_catalogue_is_listed_and_scenes_are_converted() {
     one_error(&run(&format!("scenes fetch buny --scenes-dir {place}")), &["did you mean bunny?"]);
     one_error(&run(&format!("scenes fetch kitchen --scenes-dir {place}")), &["no official address", "BART"]);
     // What is here is not fetched again.
-    assert!(good(&format!("scenes fetch sponza --scenes-dir {place}")).contains("is here"));
+    let fetch = run(&format!("scenes fetch sponza --scenes-dir {place}"));
+    one_error(&fetch, &["sponza.obj: this is not the catalogue's sponza", "nothing is overwritten"]);
+    std::fs::create_dir(folder.path().join("buddha")).unwrap();
+    std::fs::write(folder.path().join("buddha/happy_vrip.ply"), "ply\n").unwrap();
+    assert!(good(&format!("scenes fetch buddha --scenes-dir {place}")).contains("is here"));
+    one_error(&run("scenes info hall --scene-time nan"), &["--scene-time", "finite"]);
 }
 
 #[test]

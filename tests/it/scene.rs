@@ -7,6 +7,7 @@ mod broken_ply;
 mod built_in;
 mod cache;
 mod catalogue;
+mod estimate;
 mod fetch;
 mod gltf;
 mod inventor;

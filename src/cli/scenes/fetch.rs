@@ -16,7 +16,15 @@ pub fn run(name: &str, library: &LibraryArguments) -> Result<()> {
         return Err(Error::argument("--scenes-dir", problem, "name the folder that the scene should go to"));
     };
     if let Some(path) = catalogue::locate(entry, &folder) {
-        return output::print(&format!("{name} is here: {}\n", path.display()));
+        if let Some(found) = entry.other_hash(&path)? {
+            let problem = format!("this is not the catalogue's {name}: its SHA-256 is {found}");
+            return Err(Error::file(&path, None, problem, "nothing is overwritten: move it away, then fetch again"));
+        }
+        let checked = match entry.known_hash(&path) {
+            Some(_) => "its SHA-256 is the catalogue's",
+            None => "not verified: the catalogue knows no hash",
+        };
+        return output::print(&format!("{name} is here: {}: {checked}\n", path.display()));
     }
     output::note(&format!("{}: {}; credit: {}", entry.title, entry.licence, entry.credit));
     let bar = std::io::stderr().is_terminal().then(|| {

@@ -41,5 +41,6 @@ fn catalogue_text(folder: Option<&Path>) -> String {
         };
         text += &format!("      from {}\n      licence: {}\n", entry.source, entry.licence);
     }
+    text += "\n`here` is a file of that name; `scenes info` and `scenes fetch` check whether it is the catalogue's, by SHA-256\n";
     text
 }

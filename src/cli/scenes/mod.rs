@@ -76,9 +76,8 @@ fn convert(what: &str, out: &std::path::Path, library: &LibraryArguments) -> Res
         let problem = "the cache's name does not end in .rtb";
         return Err(Error::argument(out.display().to_string(), problem, "formats are told by the file's extension"));
     }
-    let source = cache::Source::of(&library.at_time(what), library.folder().as_deref())?;
-    let scene = library.load(what)?;
-    cache::write(&scene, &source, out)?;
+    let (scene, sources) = library.load_with_sources(what)?;
+    cache::write(&scene, &sources, out)?;
     let (triangles, vertices) = (scene.triangles.len(), scene.vertices.len());
     output::print(&format!("{}: {}, {triangles} triangles, {vertices} vertices\n", out.display(), scene.name))
 }

@@ -6,7 +6,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 /// Version of the layout.
-pub const FORMAT: u32 = 2;
+pub const FORMAT: u32 = 3;
 
 /// What a cache begins with.
 pub const MAGIC: [u8; 8] = *b"RTBSCENE";
@@ -31,10 +31,8 @@ pub struct Header {
     pub readers: [u8; 16],
     /// XXH3 of this header, with zeros here, and of the XXH3 of every piece of every part.
     pub checksum: [u8; 16],
-    /// BLAKE3 of the source's bytes, zero if there is no file behind the scene.
-    pub source: [u8; 32],
-    /// Bytes of the source.
-    pub source_bytes: u64,
+    /// XXH3 of what is the scene's: equal for equal scenes, whatever and whenever they were made from.
+    pub content: [u8; 16],
     // Numbers of elements; of the text, of bytes.
     pub vertices: u64,
     pub triangles: u64,

@@ -9,15 +9,17 @@
 //! - the layout has another version ([`FORMAT`]);
 //! - it was written by a program with other readers: `build.rs` hashes their source, so nobody has to remember to raise a
 //!   number;
-//! - a file with the source's name lies beside it, and is not what the cache was made from. That file is hashed only if
-//!   its length differs or it was modified after the cache; of scenes with includes only the file that was named counts.
+//! - one of the files that it was made from, includes and libraries among them, is no longer what it was (`stale.rs`). They
+//!   are looked for where they lay as seen from the cache; if none of them is there, the cache stands for itself.
 
 mod layout;
 mod pages;
 mod parts;
+mod stale;
 
 use super::extent::Extent;
-use super::{Light, Material, Options, Pose, Scene, SceneCamera, Triangle, load};
+use super::sources::{self, Kind, Source};
+use super::{Light, Material, Options, Pose, Scene, SceneCamera, Triangle, load_in};
 use crate::error::{Error, Result};
 use crate::math::Vertex;
 use bytemuck::Zeroable;
@@ -28,7 +30,7 @@ use parts::{Checksum, Parts};
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::{ErrorKind, Read, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The extension of caches.
 pub const EXTENSION: &str = "rtb";
@@ -39,68 +41,33 @@ struct Texts {
     name: String,
     camera_path: Option<String>,
     warnings: Vec<String>,
-    /// Name of the source file or folder, without its path.
-    source: String,
+    /// What the scene was made from.
+    sources: Vec<stale::Stored>,
 }
 
-/// What a cache is made from.
+/// What a scene was made from; nothing for a built-in scene.
 #[derive(Clone, Debug, Default)]
-pub struct Source {
-    name: String,
-    files: Vec<PathBuf>,
-}
+pub struct Sources(Vec<Source>);
 
-impl Source {
-    /// The files behind a scene that was loaded as `what` (see [`super::load_in`]); none for a built-in scene.
-    ///
-    /// # Errors
-    /// [`Error::Input`] if a folder cannot be read.
-    pub fn of(what: &str, folder: Option<&Path>) -> Result<Source> {
-        match load::file_behind(what, folder)? {
-            Some(name) => Source::at(Path::new(&name)),
-            None => Ok(Source::default()),
-        }
-    }
-
-    fn at(path: &Path) -> Result<Source> {
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        Ok(Source { name, files: load::parts(&path.to_string_lossy())? })
-    }
-
-    /// Length and BLAKE3 of all files.
-    fn hash(&self) -> Result<(u64, [u8; 32])> {
-        let mut hasher = blake3::Hasher::new();
-        let mut bytes = 0;
-        for path in &self.files {
-            let content = super::read_file(path)?;
-            bytes += content.len() as u64;
-            hasher.update(&(content.len() as u64).to_le_bytes());
-            hasher.update(&content);
-        }
-        Ok((bytes, if self.files.is_empty() { [0; 32] } else { *hasher.finalize().as_bytes() }))
-    }
-
-    /// True if a look at lengths and times suffices: as long as it was, and not modified after `cache` was.
-    fn untouched(&self, bytes: u64, cache: &std::fs::Metadata) -> bool {
-        let metadata: Vec<_> = self.files.iter().filter_map(|file| std::fs::metadata(file).ok()).collect();
-        let older = |m: &std::fs::Metadata| matches!((m.modified(), cache.modified()), (Ok(a), Ok(b)) if a <= b);
-        metadata.len() == self.files.len()
-            && metadata.iter().map(std::fs::Metadata::len).sum::<u64>() == bytes
-            && metadata.iter().all(older)
-    }
+/// Loads a scene as [`load_in`] does, and notes what it is made from.
+///
+/// # Errors
+/// Those of [`load_in`].
+pub fn load(what: &str, folder: Option<&Path>) -> Result<(Scene, Sources)> {
+    let (scene, sources) = sources::record(true, || load_in(what, folder));
+    Ok((scene?, Sources(sources)))
 }
 
 /// Writes a scene and what it came from. The file is there as a whole or not at all.
 ///
 /// # Errors
-/// [`Error::Input`] if the source cannot be read, [`Error::Output`] if the cache cannot be written.
-pub fn write(scene: &Scene, source: &Source, path: &Path) -> Result<()> {
-    let (source_bytes, source_hash) = source.hash()?;
+/// [`Error::Output`] if the cache cannot be written.
+pub fn write(scene: &Scene, sources: &Sources, path: &Path) -> Result<()> {
     let texts = Texts {
         name: scene.name.clone(),
         camera_path: scene.camera_path.clone(),
         warnings: scene.warnings.clone(),
-        source: source.name.clone(),
+        sources: stale::store(&sources.0, path),
     };
     let text = serde_json::to_vec(&texts).map_err(|e| Error::output(path, e.into()))?;
     let poses: Vec<RawPose> = scene.camera.iter().flat_map(|camera| &camera.frames).map(raw_pose).collect();
@@ -110,8 +77,7 @@ pub fn write(scene: &Scene, source: &Source, path: &Path) -> Result<()> {
         field_of_view: scene.camera.as_ref().map_or(0.0, |camera| camera.field_of_view),
         readers: readers(),
         checksum: [0; 16],
-        source: source_hash,
-        source_bytes,
+        content: [0; 16],
         vertices: scene.vertices.len() as u64,
         triangles: scene.triangles.len() as u64,
         materials: scene.materials.len() as u64,
@@ -130,11 +96,14 @@ pub fn write(scene: &Scene, source: &Source, path: &Path) -> Result<()> {
         bytemuck::cast_slice(&poses),
         &text,
     ];
-    let mut checksum = Checksum::new(bytemuck::bytes_of(&header));
-    for ((_, size), part) in header.parts().into_iter().zip(parts) {
+    let mut checksum = Checksum::default();
+    for (i, ((_, size), part)) in header.parts().into_iter().zip(parts).enumerate() {
+        if i == TEXTS {
+            header.content = content(&checksum, &header, &scene.name);
+        }
         checksum.add(part, size);
     }
-    header.checksum = checksum.finish();
+    header.checksum = checksum.with(bytemuck::bytes_of(&header));
 
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(format!(".{}.part", std::process::id()));
@@ -153,6 +122,17 @@ pub fn write(scene: &Scene, source: &Source, path: &Path) -> Result<()> {
     })
 }
 
+/// Which of the parts the texts are: the last.
+const TEXTS: usize = 5;
+
+/// The hash of a scene: of its name, background and field of view, and of all parts but the texts.
+fn content(checksum: &Checksum, header: &Header, name: &str) -> [u8; 16] {
+    let mut instead = bytemuck::bytes_of(&header.background).to_vec();
+    instead.extend(header.field_of_view.to_le_bytes());
+    instead.extend(name.as_bytes());
+    checksum.with(&instead)
+}
+
 /// Makes the checksum right, and the readers ours, of a cache that somebody has changed: for tests of what lies behind
 /// those checks. What is no cache, by its lengths, stays as it is.
 pub fn reseal(bytes: &mut [u8]) {
@@ -162,14 +142,14 @@ pub fn reseal(bytes: &mut [u8]) {
         return;
     }
     (header.readers, header.checksum) = (readers(), [0; 16]);
-    let mut checksum = Checksum::new(bytemuck::bytes_of(&header));
+    let mut checksum = Checksum::default();
     let mut rest: &[u8] = parts;
     for (count, size) in header.parts() {
         let (part, behind) = rest.split_at(count as usize * size);
         checksum.add(part, size);
         rest = behind;
     }
-    header.checksum = checksum.finish();
+    header.checksum = checksum.with(bytemuck::bytes_of(&header));
     start.copy_from_slice(bytemuck::bytes_of(&header));
 }
 
@@ -185,11 +165,12 @@ pub fn read(path: &Path, _: &Options) -> Result<Scene> {
         ErrorKind::UnexpectedEof => fault("the cache is truncated", again),
         _ => fault(&format!("cannot be read: {e}"), "check the path and its permissions"),
     };
-    let mut file = File::open(path).map_err(unreadable)?;
-    let metadata = file.metadata().map_err(unreadable)?;
-    if !metadata.is_file() {
+    // Before it is opened: a pipe would wait for whoever writes into it.
+    if !std::fs::metadata(path).map_err(unreadable)?.is_file() {
         return Err(fault("not a regular file", "name a file that holds a scene"));
     }
+    let mut file = File::open(path).map_err(unreadable)?;
+    let metadata = file.metadata().map_err(unreadable)?;
     let mut header = Header::zeroed();
     let start = &mut bytemuck::bytes_of_mut(&mut header)[..metadata.len().min(size_of::<Header>() as u64) as usize];
     file.read_exact(start).map_err(unreadable)?;
@@ -216,20 +197,25 @@ pub fn read(path: &Path, _: &Options) -> Result<Scene> {
         }
         Some(_) => {}
     }
-    let checksum = Checksum::new(bytemuck::bytes_of(&Header { checksum: [0; 16], ..header }));
-    let mut parts = Parts { path, at: size_of::<Header>() as u64, checksum, extent: Extent::EMPTY };
+    let mut parts =
+        Parts { file: &file, at: size_of::<Header>() as u64, checksum: Checksum::default(), extent: Extent::EMPTY };
     let vertices: Vec<Vertex> = parts.next(header.vertices, Extent::of_vertices).map_err(unreadable)?;
     let triangles: Vec<Triangle> = parts.next(header.triangles, Extent::of_triangles).map_err(unreadable)?;
     let materials: Vec<Material> = parts.next(header.materials, |_| Extent::EMPTY).map_err(unreadable)?;
     let lights: Vec<Light> = parts.next(header.lights, |_| Extent::EMPTY).map_err(unreadable)?;
     let poses: Vec<RawPose> = parts.next(header.poses, |_| Extent::EMPTY).map_err(unreadable)?;
     let text: Vec<u8> = parts.next(header.text, |_| Extent::EMPTY).map_err(unreadable)?;
-    if parts.checksum.finish() != header.checksum {
+    let unsigned = Header { checksum: [0; 16], ..header };
+    if parts.checksum.with(bytemuck::bytes_of(&unsigned)) != header.checksum {
         return Err(fault("the cache is corrupt: its checksum is wrong", again));
     }
     let texts: Texts =
         serde_json::from_slice(&text).map_err(|_| fault("the cache is corrupt: its texts cannot be read", again))?;
-    check_source(path, &texts.source, &header, &metadata)?;
+    let sources = stale::restore(texts.sources, &stale::folder_of(path))
+        .ok_or_else(|| fault("the cache is corrupt: it names its sources in a way that it should not", again))?;
+    if let Some((source, fate)) = stale::changed(&sources) {
+        return Err(fault(&format!("the cache is stale: {} {fate}", source.display()), again));
+    }
     let field_of_view = header.field_of_view;
     let frames: Vec<Pose> = poses.iter().map(pose).collect();
     let sound = |pose: &Pose| pose.time.is_finite() && pose.position.is_finite() && pose.direction.is_normalized();
@@ -250,20 +236,14 @@ pub fn read(path: &Path, _: &Options) -> Result<Scene> {
         warnings: texts.warnings,
     };
     scene.complete(parts.extent).map_err(|(problem, mend)| fault(&problem, mend))?;
+    // Whoever makes something from this cache makes it from the cache's sources as well.
+    sources.into_iter().for_each(|source| sources::add(|_| source));
+    sources::add(|_| Source {
+        path: sources::whole(path),
+        kind: Kind::Cache,
+        bytes: metadata.len(),
+        modified: None,
+        hash: stale::hexadecimal(&header),
+    });
     Ok(scene)
-}
-
-/// Refuses a cache beside which a source lies that is no longer the one it was made from.
-fn check_source(path: &Path, name: &str, header: &Header, metadata: &std::fs::Metadata) -> Result<()> {
-    // A name only: a cache must not make its reader look anywhere else.
-    let beside = path.with_file_name(name);
-    if name.is_empty() || Path::new(name).file_name() != Some(name.as_ref()) || !beside.exists() {
-        return Ok(());
-    }
-    let source = Source::at(&beside)?;
-    if source.untouched(header.source_bytes, metadata) || source.hash()?.1 == header.source {
-        return Ok(());
-    }
-    let problem = format!("the cache is stale: {} beside it has changed", beside.display());
-    Err(Error::file(path, None, problem, "make it again with `rtbench scenes convert`"))
 }

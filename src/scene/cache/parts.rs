@@ -5,8 +5,7 @@ use crate::scene::extent::Extent;
 use bytemuck::Pod;
 use rayon::prelude::*;
 use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
-use std::path::Path;
+use std::io;
 use twox_hash::XxHash3_128;
 
 /// Bytes of a piece, rounded down to whole elements.
@@ -17,17 +16,13 @@ fn piece(size: usize) -> usize {
     PIECE / size
 }
 
-/// A checksum in the making: a hash of the header and of the pieces' hashes.
+/// A checksum in the making: the hashes of the pieces.
+#[derive(Default)]
 pub struct Checksum {
     hashes: Vec<u8>,
 }
 
 impl Checksum {
-    /// Begins with the header.
-    pub fn new(header: &[u8]) -> Checksum {
-        Checksum { hashes: header.to_vec() }
-    }
-
     /// Adds the bytes of a part whose elements have so many each.
     pub fn add(&mut self, part: &[u8], size: usize) {
         part.chunks(piece(size) * size).for_each(|piece| self.add_hash(XxHash3_128::oneshot(piece)));
@@ -37,15 +32,15 @@ impl Checksum {
         self.hashes.extend(hash.to_le_bytes());
     }
 
-    /// The checksum.
-    pub fn finish(&self) -> [u8; 16] {
-        XxHash3_128::oneshot(&self.hashes).to_le_bytes()
+    /// The checksum of these bytes and of what was added so far.
+    pub fn with(&self, start: &[u8]) -> [u8; 16] {
+        XxHash3_128::oneshot(&[start, &self.hashes].concat()).to_le_bytes()
     }
 }
 
 /// Reads parts.
 pub struct Parts<'a> {
-    pub path: &'a Path,
+    pub file: &'a File,
     /// Where the next part begins.
     pub at: u64,
     pub checksum: Checksum,
@@ -55,24 +50,39 @@ pub struct Parts<'a> {
 
 impl Parts<'_> {
     /// The next `count` elements, straight into their memory, and what `look` says of them. Pieces are worked on by all
-    /// threads, each by a handle of its own, since a handle has one position.
-    pub fn next<T: Pod + Send + Sync>(&mut self, count: u64, look: fn(&[T]) -> Extent) -> std::io::Result<Vec<T>> {
+    /// threads.
+    pub fn next<T: Pod + Send + Sync>(&mut self, count: u64, look: fn(&[T]) -> Extent) -> io::Result<Vec<T>> {
         let mut elements: Vec<T> = bytemuck::zeroed_vec(count as usize);
         pages::prefer_large(bytemuck::cast_slice_mut(&mut elements));
         let piece = piece(size_of::<T>());
         let (start, step) = (self.at, (piece * size_of::<T>()) as u64);
         let read = |(i, piece): (usize, &mut [T])| {
-            let mut file = File::open(self.path)?;
-            file.seek(SeekFrom::Start(start + i as u64 * step))?;
-            file.read_exact(bytemuck::cast_slice_mut(piece))?;
+            read_exact_at(self.file, bytemuck::cast_slice_mut(piece), start + i as u64 * step)?;
             Ok((XxHash3_128::oneshot(bytemuck::cast_slice(piece)), look(piece)))
         };
         let pieces = elements.par_chunks_mut(piece).enumerate().map(read);
-        for (hash, extent) in pieces.collect::<std::io::Result<Vec<_>>>()? {
+        for (hash, extent) in pieces.collect::<io::Result<Vec<_>>>()? {
             self.checksum.add_hash(hash);
             self.extent = self.extent.and(extent);
         }
         self.at += count * size_of::<T>() as u64;
         Ok(elements)
     }
+}
+
+/// Fills the buffer from a place in the file, without regard to the handle's own position, which threads share.
+#[cfg(unix)]
+fn read_exact_at(file: &File, buffer: &mut [u8], at: u64) -> io::Result<()> {
+    std::os::unix::fs::FileExt::read_exact_at(file, buffer, at)
+}
+
+#[cfg(windows)]
+fn read_exact_at(file: &File, mut buffer: &mut [u8], mut at: u64) -> io::Result<()> {
+    while !buffer.is_empty() {
+        match std::os::windows::fs::FileExt::seek_read(file, buffer, at)? {
+            0 => return Err(io::ErrorKind::UnexpectedEof.into()),
+            read => (buffer, at) = (&mut buffer[read..], at + read as u64),
+        }
+    }
+    Ok(())
 }

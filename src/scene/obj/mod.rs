@@ -299,6 +299,7 @@ impl<'a> Reader<'a> {
             }
         }
         if !path.is_file() {
+            super::sources::absent(&path);
             let name = printable(name);
             self.warnings.add(&format!("material library {name} is not there: its materials are neutral grey"));
             return Ok(());

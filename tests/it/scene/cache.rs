@@ -2,7 +2,7 @@
 
 use super::refusal;
 use glam::Vec3;
-use rtbench::scene::cache::{self, Source};
+use rtbench::scene::cache::{self, Sources};
 use rtbench::scene::{self, Light, Pose, Scene, SceneCamera};
 use std::path::{Path, PathBuf};
 
@@ -18,7 +18,7 @@ fn full() -> Scene {
 
 fn cached(scene: &Scene, folder: &Path) -> PathBuf {
     let path = folder.join("scene.rtb");
-    cache::write(scene, &Source::default(), &path).unwrap();
+    cache::write(scene, &Sources::default(), &path).unwrap();
     path
 }
 
@@ -47,6 +47,11 @@ fn options_work_on_a_cache_as_on_any_file() {
     let path = cached(&full(), folder.path());
     let scaled = scene::load(&format!("{}:scale=2", path.display())).unwrap();
     assert_eq!(scaled.vertices[5].position, full().vertices[5].position * 2.0);
+    assert_eq!(scaled.name, format!("{},scale=2", full().name), "what is different has a different name");
+    for option in ["time=5", "cones=no", "segments=5", "lamp=foo", "camera=nix"] {
+        let message = refusal(scene::load(&format!("{}:{option}", path.display())));
+        assert!(message.contains("a .rtb file has no option") && message.contains("up, scale, fov"), "{message}");
+    }
 }
 
 #[test]
@@ -60,12 +65,12 @@ fn every_damage_is_refused() {
     };
     assert!(refused(b"").contains("not a cache"));
     assert!(refused(b"ply\nformat ascii 1.0\n").contains("not a cache"));
-    for length in [4, 8, 100, 159, 300, sound.len() / 2, sound.len() - 1] {
+    for length in [4, 8, 100, 135, 300, sound.len() / 2, sound.len() - 1] {
         assert!(refused(&sound[..length]).contains("truncated"), "{length}");
     }
     assert!(refused(&[&sound[..], b"x"].concat()).contains("bytes behind its end"));
     // One bit in every part: header, vertices, triangles, texts.
-    for at in [12, 40, 155, 1000, sound.len() / 2, sound.len() - 3] {
+    for at in [12, 40, 50, 131, 1000, sound.len() / 2, sound.len() - 3] {
         let mut bytes = sound.clone();
         bytes[at] ^= 4;
         let message = refused(&bytes);
@@ -79,8 +84,8 @@ fn every_damage_is_refused() {
     assert!(refused(&changed(8, &[9])).contains("stale: its layout has version 9"));
     assert!(refused(&changed(16, b"0123456789abcdef")).contains("stale: it was made by another version"));
     // Counts beyond the file, and beyond all sense: nothing is allocated for them.
-    assert!(refused(&changed(88, &(1u64 << 26).to_le_bytes())).contains("truncated"));
-    assert!(refused(&changed(88, &u64::MAX.to_le_bytes())).contains("corrupt"));
+    assert!(refused(&changed(64, &(1u64 << 26).to_le_bytes())).contains("truncated"));
+    assert!(refused(&changed(64, &u64::MAX.to_le_bytes())).contains("corrupt"));
     assert_eq!(refused(&sound[..0]).lines().count(), 1);
     std::fs::write(&path, &sound).unwrap();
     load(&path).unwrap();
@@ -98,25 +103,51 @@ fn a_sound_checksum_does_not_excuse_a_broken_scene() {
     assert!(refusal(load(&cached(&scene, folder.path()))).contains("triangle 7 uses a vertex beyond"));
 }
 
+/// Converts as the program does.
+fn convert(what: &str, to: &Path) -> Scene {
+    let (scene, sources) = cache::load(what, None).unwrap();
+    cache::write(&scene, &sources, to).unwrap();
+    scene
+}
+
+/// Sets the time of a file so many seconds ago.
+fn touch(path: &Path, ago: u64) {
+    let time = std::time::SystemTime::now() - std::time::Duration::from_secs(ago);
+    std::fs::File::options().append(true).open(path).unwrap().set_modified(time).unwrap();
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
 #[test]
 fn a_changed_source_makes_it_stale() {
     let folder = tempfile::tempdir().unwrap();
     let source = folder.path().join("cube.ply");
+    let other = super::ply::CUBE.replacen('0', "1", 1);
     std::fs::write(&source, super::ply::CUBE).unwrap();
+    touch(&source, 1000);
     let path = folder.path().join("cube.rtb");
-    let what = source.to_str().unwrap();
-    cache::write(&scene::load(what).unwrap(), &Source::of(what, None).unwrap(), &path).unwrap();
+    convert(text(&source), &path);
     load(&path).unwrap();
-    let later = std::time::SystemTime::now() + std::time::Duration::from_secs(100);
-    let touch = || std::fs::File::options().append(true).open(&source).unwrap().set_modified(later).unwrap();
     // Touched, but the same bytes
-    touch();
-    load(&path).unwrap();
-    // Other bytes of the same length
-    std::fs::write(&source, super::ply::CUBE.replacen('0', "1", 1)).unwrap();
-    touch();
-    assert!(refusal(load(&path)).contains("cube.ply beside it has changed"));
+    for ago in [10, 100_000] {
+        touch(&source, ago);
+        load(&path).unwrap();
+    }
+    // Other bytes of the same length, newer or older
+    for ago in [10, 100_000] {
+        std::fs::write(&source, &other).unwrap();
+        touch(&source, ago);
+        let message = refusal(load(&path));
+        assert!(message.contains("stale") && message.contains("cube.ply has changed"), "{message}");
+    }
     std::fs::write(&source, "ply").unwrap();
+    assert!(refusal(load(&path)).contains("stale"));
+    // Changed at once, perhaps within the clock's step
+    std::fs::write(&source, super::ply::CUBE).unwrap();
+    convert(text(&source), &path);
+    std::fs::write(&source, &other).unwrap();
     assert!(refusal(load(&path)).contains("stale"));
     // Without the source, it cannot be told, and need not.
     std::fs::remove_file(&source).unwrap();
@@ -124,12 +155,81 @@ fn a_changed_source_makes_it_stale() {
 }
 
 #[test]
+fn every_file_that_was_read_counts() {
+    let files = super::Files::new(&[
+        ("a.obj", "mtllib a.mtl b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n"),
+        ("sub/c.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
+        ("a.mtl", "newmtl m\nKd 1 0 0\n"),
+    ]);
+    let cached = files.path("sub/caches/x.rtb");
+    std::fs::create_dir_all(cached.parent().unwrap()).unwrap();
+    let list = format!("{}+{}", text(&files.path("a.obj")), text(&files.path("sub/c.obj")));
+    let stale = |words: &str| {
+        let message = refusal(load(&cached));
+        assert!(message.contains("stale") && message.contains(words), "{message}");
+    };
+    assert_eq!(convert(&list, &cached).name, "a+c");
+    load(&cached).unwrap();
+    files.write("a.mtl", b"newmtl m\nKd 0 1 0\n");
+    stale("a.mtl has changed");
+    convert(&list, &cached);
+    files.write("b.mtl", b"");
+    stale("b.mtl is there now");
+    convert(&list, &cached);
+    std::fs::remove_file(files.path("sub/c.obj")).unwrap();
+    stale("c.obj is gone");
+    // A folder with its own cache in it
+    let cached = files.path("folder.rtb");
+    let folder = text(&files.path("")).to_owned();
+    convert(&folder, &cached);
+    load(&cached).unwrap();
+    assert_eq!(convert(&folder, &cached).triangles.len(), 1);
+    files.write("d.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    assert!(refusal(load(&cached)).contains("has other files"));
+    convert(&folder, &cached);
+    files.write("d.obj", b"v 0 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 3\n");
+    assert!(refusal(load(&cached)).contains("d.obj has changed"));
+}
+
+#[test]
+fn a_cache_of_a_cache_is_made_from_the_same() {
+    let files = super::Files::new(&[("a.ply", super::ply::CUBE)]);
+    let (source, y, z) = (files.path("a.ply"), files.path("y.rtb"), files.path("z.rtb"));
+    let scaled = format!("{}:scale=2", text(&y));
+    convert(text(&source), &y);
+    assert_eq!(convert(&scaled, &z).name, "a:scale=2");
+    // The same again, at another time
+    touch(&source, 1000);
+    convert(text(&source), &y);
+    load(&z).unwrap();
+    convert("hall:triangles=15000", &y);
+    assert!(refusal(load(&z)).contains("y.rtb has changed"));
+    convert(text(&source), &y);
+    load(&z).unwrap();
+    files.write("a.ply", super::ply::CUBE.replacen('0', "1", 1).as_bytes());
+    assert!(refusal(load(&z)).contains("a.ply has changed"));
+    // One that is written over what it was made from
+    convert("hall:triangles=15000", &y);
+    convert(&scaled, &y);
+    load(&y).unwrap();
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_refused_and_not_waited_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let pipe = folder.path().join("pipe.rtb");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    assert!(refusal(load(&pipe)).contains("not a regular file"));
+}
+
+#[test]
 fn a_cache_that_cannot_be_written_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("no/such/folder/scene.rtb");
-    let error = cache::write(&full(), &Source::default(), &path).unwrap_err().to_string();
+    let error = cache::write(&full(), &Sources::default(), &path).unwrap_err().to_string();
     assert!(error.contains("cannot write"), "{error}");
     std::fs::create_dir(folder.path().join("taken.rtb")).unwrap();
-    cache::write(&full(), &Source::default(), &folder.path().join("taken.rtb")).unwrap_err();
+    cache::write(&full(), &Sources::default(), &folder.path().join("taken.rtb")).unwrap_err();
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
 }

@@ -72,6 +72,11 @@ fn a_name_is_its_file_in_the_folder_of_scenes() {
     let cube = load_in("bunny", Some(folder.path())).unwrap();
     assert_eq!(cube.name, "bunny");
     assert!(cube.warnings.iter().any(|w| w.contains("the catalogue expects 69451")), "{:?}", cube.warnings);
+    assert!(cube.warnings.iter().any(|w| w.contains("not the catalogue's file")), "{:?}", cube.warnings);
+    let message = refusal(load_in("bunny:segments=9", Some(folder.path())));
+    assert!(message.contains("a .ply file has no option `segments`"), "{message}");
+    assert_eq!(scene::at_time("bunny", 3.0), "bunny", "nothing moves");
+    assert_eq!(scene::at_time("robots", 3.0), "robots:time=3");
     assert_eq!(load_in("bunny:scale=2", Some(folder.path())).unwrap().name, "bunny:scale=2");
     assert!(refusal(load_in("bunny:size=2", Some(folder.path()))).contains("no option `size`"));
 }
@@ -94,11 +99,48 @@ fn a_folder_and_a_list_are_one_scene() {
         let (first, second) = (both.triangles[0], both.triangles[one.triangles.len()]);
         assert_eq!(second.vertices, first.vertices.map(|v| v + one.vertices.len() as u32));
         assert_eq!(second.material, 1);
-        assert!(!both.name.is_empty());
+        assert_eq!(
+            both.name,
+            if what.contains('+') { "a+b".into() } else { folder.path().file_name().unwrap().to_string_lossy() }
+        );
     }
+    let message = refusal(scene::load(&format!("{}+{whole}", at("a.ply"))));
+    assert!(message.contains("it is a folder"), "{message}");
     assert!(refusal(scene::load(&format!("{}+{}", at("a.ply"), at("c.ply")))).contains("c.ply: no such file"));
     std::fs::write(folder.path().join("c.ply"), "ply\n").unwrap();
     assert!(refusal(scene::load(whole)).contains("c.ply"));
+}
+
+#[test]
+fn what_a_file_of_a_folder_includes_is_not_read_again() {
+    let square = "p 3\n0 0 0\n1 0 0\n0 1 0\n";
+    let level = format!("i 0 part.aff\n{square}");
+    let files = super::Files::new(&[("part.aff", square), ("scene.aff", &level), ("text.txt", "")]);
+    let folder = files.path("");
+    let scene = scene::load(folder.to_str().unwrap()).unwrap();
+    assert_eq!((scene.name.as_str(), scene.triangles.len()), ("scene", 2));
+    assert!(!scene.warnings.iter().any(|w| w.contains("made of")), "{:?}", scene.warnings);
+    files.write("two.aff", level.as_bytes());
+    let scene = scene::load(folder.to_str().unwrap()).unwrap();
+    assert_eq!(scene.triangles.len(), 4);
+    for words in ["made of scene.aff, two.aff", "versions of one scene"] {
+        assert!(scene.warnings.iter().any(|w| w.contains(words)), "{words}: {:?}", scene.warnings);
+    }
+}
+
+#[test]
+fn options_show_in_the_name_of_a_catalogue_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir_all(folder.path().join("museum")).unwrap();
+    std::fs::write(folder.path().join("museum/museum6.aff"), "p 3\n0 0 0\n1 0 0\n0 1 0\n").unwrap();
+    for (what, name) in [
+        ("museum", "museum"),
+        ("museum:time=3", "museum"),
+        ("museum:cones=yes", "museum:cones=yes"),
+        ("museum:time=4,scale=2", "museum:time=4,scale=2"),
+    ] {
+        assert_eq!(load_in(what, Some(folder.path())).unwrap().name, name);
+    }
 }
 
 /// What is here has the counts that the catalogue promises, and the hash.
@@ -118,7 +160,7 @@ fn real_scenes_are_as_the_catalogue_says() {
             assert_eq!(&hash, expected, "{}", entry.name);
         }
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("obj");
-        if !scene::FORMATS.iter().any(|(known, _)| *known == extension) {
+        if !scene::FORMATS.iter().any(|(known, ..)| *known == extension) {
             eprintln!("{}: not loaded, no reader for .{extension}", entry.name);
             continue;
         }

@@ -20,6 +20,8 @@ enum Answer {
     Whole(Vec<u8>),
     /// Announces all, sends so many bytes, hangs up.
     Cut(Vec<u8>, usize),
+    /// Announces all, sends so many bytes, and then nothing, with the connection open.
+    Silent(Vec<u8>, usize),
     /// Another place.
     Redirect(String),
     /// A status without a body.
@@ -41,6 +43,7 @@ fn server(answers: Vec<Answer>) -> (String, Receiver<Option<String>>) {
                 range.as_deref().and_then(|r| r.strip_prefix("bytes=")?.strip_suffix('-')?.parse().ok());
             let _ = report.send(range);
             let head = |status: &str, extra: String| format!("HTTP/1.1 {status}\r\nConnection: close\r\n{extra}\r\n");
+            let silent = matches!(answer, Answer::Silent(..));
             let (head, body) = match (answer, first) {
                 (Answer::Serve(bytes), Some(first)) if first >= bytes.len() => {
                     (head("416 Range Not Satisfiable", "Content-Length: 0\r\n".into()), Vec::new())
@@ -54,7 +57,7 @@ fn server(answers: Vec<Answer>) -> (String, Receiver<Option<String>>) {
                 (Answer::Serve(bytes) | Answer::Whole(bytes), _) => {
                     (head("200 OK", format!("Content-Length: {}\r\n", bytes.len())), bytes)
                 }
-                (Answer::Cut(bytes, sent), _) => {
+                (Answer::Cut(bytes, sent) | Answer::Silent(bytes, sent), _) => {
                     (head("200 OK", format!("Content-Length: {}\r\n", bytes.len())), bytes[..sent].to_vec())
                 }
                 (Answer::Redirect(to), _) => {
@@ -64,6 +67,9 @@ fn server(answers: Vec<Answer>) -> (String, Receiver<Option<String>>) {
             };
             // The client may have hung up.
             let _ = stream.write_all(head.as_bytes()).and_then(|()| stream.write_all(&body));
+            if silent {
+                std::mem::forget(stream);
+            }
         }
     });
     (url, reports)
@@ -100,6 +106,9 @@ fn sha256(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
+/// Long enough for a busy computer, short enough for a test.
+const SILENCE: std::time::Duration = std::time::Duration::from_secs(3);
+
 /// What came of a fetch.
 struct Fetched {
     result: rtbench::Result<(PathBuf, Verified)>,
@@ -112,7 +121,7 @@ fn fetch(answers: Vec<Answer>, hashes: [Option<&str>; 2], folder: &Path) -> Fetc
     let archive =
         Archive { url, sha256: hashes[0].map(str::to_owned), member: "x/mesh.ply".into(), to: "deep/mesh.ply".into() };
     let mut events = Vec::new();
-    let result = fetch_archive("test", &archive, hashes[1], folder, &mut |event| events.push(event));
+    let result = fetch_archive("test", &archive, hashes[1], folder, SILENCE, &mut |event| events.push(event));
     Fetched { result, events, ranges: reports.try_iter().collect() }
 }
 
@@ -206,6 +215,18 @@ fn a_cut_connection_is_continued() {
     assert!(std::fs::read(fetched.result.unwrap().0).unwrap() == content());
     assert_eq!(fetched.ranges, [Some(format!("bytes={cut}-"))]);
     assert_eq!(listing(folder.path()), ["deep/mesh.ply"]);
+}
+
+#[test]
+fn a_server_that_falls_silent_is_left() {
+    let folder = tempfile::tempdir().unwrap();
+    let half = good().len() / 2;
+    let answers = vec![Answer::Silent(good(), half), Answer::Serve(good())];
+    let fetched = fetch(answers, [Some(&sha256(&good())), None], folder.path());
+    assert!(std::fs::read(fetched.result.unwrap().0).unwrap() == content());
+    assert_eq!(fetched.ranges, [None, Some(format!("bytes={half}-"))]);
+    let again = |event: &Event| matches!(event, Event::Again(reason) if reason.contains("has sent nothing for 3 s"));
+    assert!(fetched.events.iter().any(again), "{:?}", fetched.events.last());
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 use super::gltf::glb;
 use super::{Files, real_scenes};
-use rtbench::scene::cache::{self, Source};
+use rtbench::scene::cache::{self, Sources};
 use rtbench::scene::{self, Light, Material, Pose, Scene, Triangle};
 use serde_json::json;
 use std::fmt::Write;
@@ -135,7 +135,7 @@ fn built_files_take_four_times_their_scene_at_most() {
     files.write("built.bin", &buffer);
     files.write("built.gltf", text.as_bytes());
     written.push((files.path("built.gltf"), (text.len() + buffer.len()) as u64));
-    cache::write(&scene, &Source::default(), &files.path("built.rtb")).unwrap();
+    cache::write(&scene, &Sources::default(), &files.path("built.rtb")).unwrap();
     // Nothing of a cache's file is kept: it is read into its place
     written.push((files.path("built.rtb"), 0));
     hold(&written);

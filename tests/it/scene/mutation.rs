@@ -11,7 +11,7 @@ use base64::Engine;
 use guard::Watchdog;
 use mutate::Random;
 use rtbench::Error;
-use rtbench::scene::cache::{self, Source};
+use rtbench::scene::cache::{self, Sources};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Formats by extension, and where their fixtures lie below the folder of real scenes.
@@ -195,7 +195,7 @@ fn caches_survive_every_mutation() {
     let files = Files::new(&[("all.aff", OWN[0].1)]);
     let mut scene = files.load("all.aff:segments=4").unwrap();
     scene.warnings.truncate(2);
-    cache::write(&scene, &Source::default(), &files.path("all.rtb")).unwrap();
+    cache::write(&scene, &Sources::default(), &files.path("all.rtb")).unwrap();
     let bytes = std::fs::read(files.path("all.rtb")).unwrap();
     // The checksum sees everything; with a right one, the other checks have to.
     let caught = break_it(&Case::new("all.rtb", &bytes, mutate::bytes));
