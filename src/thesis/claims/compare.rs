@@ -22,7 +22,7 @@ pub const UNKNOWN_NOISE_PCT: f64 = 5.0;
 /// passes of one process, and the same program started twice was seen to differ by more than that.
 pub const TIME_MARGIN_PCT: f64 = 10.0;
 
-/// The same for build times: each tree is built once.
+/// The same for build times: each tree is built only a few times.
 pub const BUILD_MARGIN_PCT: f64 = 20.0;
 
 /// A number, its relative noise and the relative margin within which nothing is decided, both 0 to 1.

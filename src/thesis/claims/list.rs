@@ -88,7 +88,7 @@ pub const CLAIMS: [Claim; 15] = [
         by_counts: None,
         subject: Subject::NONE,
         left_out: cases::unlike_builds,
-        remark: "Each structure is built once: differences below 20 % decide nothing.",
+        remark: "Few builds each: differences below 20 % decide nothing.",
     },
     Claim {
         id: "2",
