@@ -1,4 +1,5 @@
-//! One configuration from verification to its record: verify, count, time. What disagrees is not timed.
+//! One configuration before it is timed, verified and counted, and after it. What disagrees is not timed; timing itself is in
+//! [`super::batch`].
 
 use super::measure;
 use super::plan::{Path, Plan};
@@ -7,9 +8,10 @@ use super::verify::{Verdict, Verifier};
 use crate::accel::method::Rays;
 use crate::accel::{Built, Selection};
 use crate::backend::{Config, Interrupted, Pixel, Prepared, Size};
+use crate::camera::View;
 use crate::error::{Error, Result};
 use crate::results::record::{
-    ConfigurationRecord, Failure, Memory, SceneRecord, Status, StructureRecord, Verification,
+    ConfigurationRecord, Failure, Memory, Samples, SceneRecord, Status, StructureRecord, Verification,
 };
 use crate::results::{files, picture};
 use crate::scene::Scene;
@@ -138,12 +140,12 @@ pub fn structure_record(subject: &Subject, selection: &Selection, built: &Built)
     }
 }
 
-/// Verify, count and time one configuration.
+/// Verify and count one configuration. The record is `verified` if it may be timed.
 ///
 /// # Errors
 /// The device's, [`Error::Interrupted`], [`Error::Output`] of a difference image. A wrong answer is no error but a
 /// record that says so.
-pub fn measure(
+pub fn examine(
     context: &mut Context,
     subject: &mut Subject,
     candidate: &mut Candidate,
@@ -210,32 +212,38 @@ pub fn measure(
         return Ok(record);
     }
     record.verified = true;
+    Ok(record)
+}
 
-    // Time.
-    let watch = &mut *context.watch;
-    let (passes, warmup_frames) = (context.plan.passes, context.plan.warmup_frames);
-    let interrupted = context.interrupted;
-    let samples = measure::time(prepared, config, views, size, passes, warmup_frames, interrupted, &mut || {
-        watch(Event::Work(work));
-    })?;
+/// Completes the record of a configuration that has been timed.
+///
+/// # Errors
+/// The device's, while what it wrote is read back.
+pub fn conclude(
+    record: &mut ConfigurationRecord,
+    prepared: &mut dyn Prepared,
+    views: &[View],
+    samples: Samples,
+) -> Result<()> {
+    let size = Size { width: record.width, height: record.height };
     // What has been timed is not what has been verified (whole frames, in flight): its last picture must be the same.
     let timed = prepared.timed()?;
     record.dispatches = (timed.dispatches > 0).then_some(timed.dispatches);
     if let Some(view) = views.last()
-        && let differing = differing_pixels(&timed.pixels, &prepared.image(config, view, size)?)
+        && let differing = differing_pixels(&timed.pixels, &prepared.image(record.config, view, size)?)
         && differing > 0
     {
         let message = format!("the last timed frame has {differing} pixels that are not those of the verified kernel");
-        fail(&mut record, Failure::Verification, message);
+        fail(record, Failure::Verification, message);
         record.verified = false;
-        return Ok(record);
+        return Ok(());
     }
     let (source, warnings) = measure::choose_source(&samples);
     record.timing_source = Some(source);
     record.warnings.extend(warnings);
     record.samples = Some(samples);
     record.status = Status::Ok;
-    Ok(record)
+    Ok(())
 }
 
 /// Compare one frame with the reference, on the small image also with the twin, and keep a picture of what differs.

@@ -54,37 +54,34 @@ pub fn count(
     Ok(Counted { sums, first_image })
 }
 
-/// Warms up, then times `passes` passes over the path.
+/// No samples yet.
+pub fn no_samples() -> Samples {
+    Samples { device_ns: Some(Vec::new()), ..Samples::default() }
+}
+
+/// Runs `warm_up`, which is not timed, then times one pass over a path and adds it to the samples.
 ///
 /// # Errors
 /// The device's, or [`Error::Interrupted`].
-#[allow(clippy::too_many_arguments)]
-pub fn time(
+pub fn pass(
     prepared: &mut dyn Prepared,
-    config: Config,
+    (config, size): (Config, Size),
+    warm_up: &[View],
     views: &[View],
-    size: Size,
-    passes: usize,
-    warmup_frames: usize,
     interrupted: Interrupted,
-    timed_pass: &mut dyn FnMut(),
-) -> Result<Samples> {
-    let warm_up: Vec<View> = views.iter().cycle().take(warmup_frames).cloned().collect();
+    samples: &mut Samples,
+) -> Result<()> {
     if !warm_up.is_empty() {
-        prepared.time_path(config, &warm_up, size, interrupted)?;
+        prepared.time_path(config, warm_up, size, interrupted)?;
     }
-    let mut samples = Samples { device_ns: Some(Vec::new()), ..Samples::default() };
-    for _ in 0..passes {
-        let start = Instant::now();
-        let frames = prepared.time_path(config, views, size, interrupted)?;
-        samples.pass_ns.push(start.elapsed().as_nanos() as u64);
-        if frames.len() != views.len() {
-            return Err(Error::Device(format!("{} of {} frames came back", frames.len(), views.len())));
-        }
-        push(&mut samples, &frames);
-        timed_pass();
+    let start = Instant::now();
+    let frames = prepared.time_path(config, views, size, interrupted)?;
+    samples.pass_ns.push(start.elapsed().as_nanos() as u64);
+    if frames.len() != views.len() {
+        return Err(Error::Device(format!("{} of {} frames came back", frames.len(), views.len())));
     }
-    Ok(samples)
+    push(samples, &frames);
+    Ok(())
 }
 
 /// Adds a pass.

@@ -1,6 +1,7 @@
 //! Measuring: the plan of a sweep, verification before timing, the clock, the machine's description. Only here (and
 //! in build statistics) is a clock read. What is measured leaves as [`crate::results`] records and nothing else.
 
+pub mod batch;
 pub mod configuration;
 pub mod environment;
 pub mod measure;

@@ -34,7 +34,7 @@ pub struct Request {
     pub frames: Option<usize>,
     /// Timed passes.
     pub passes: Option<usize>,
-    /// Untimed frames before the first pass.
+    /// Untimed frames before each pass.
     pub warmup_frames: Option<usize>,
     /// Folder with the files of the catalogue's scenes.
     pub scenes_folder: Option<PathBuf>,
@@ -51,7 +51,7 @@ pub struct Plan {
     pub camera_path: Option<String>,
     /// Timed passes.
     pub passes: usize,
-    /// Untimed frames before the first pass.
+    /// Untimed frames before each pass.
     pub warmup_frames: usize,
     /// Threads that build, where the command line does not say; 0 for all.
     pub build_threads: usize,

@@ -28,7 +28,7 @@ pub struct Preset {
     pub frames: Option<usize>,
     /// Timed passes over each path.
     pub passes: usize,
-    /// Untimed frames before the first pass.
+    /// Untimed frames before each pass.
     pub warmup_frames: usize,
     /// Threads that build, where the command line does not say; 0 for all.
     #[serde(default)]

@@ -1,6 +1,7 @@
-//! The sweep: for each scene and structure, every configuration is verified, counted and timed, in this order, and
-//! its record is on the disk before the next one begins.
+//! The sweep: scene by scene, structures are built, and every configuration is verified, counted and timed, in this order,
+//! in turn with the other structures ([`super::batch`]); its records are on the disk before the next one begins.
 
+use super::batch::{Member, Place};
 use super::configuration::{self, Candidate, Context, Subject};
 use super::environment;
 use super::pictures;
@@ -8,7 +9,7 @@ use super::plan::{self, Path, Plan, Task};
 use super::resume::Earlier;
 use super::verify::Verifier;
 use crate::accel::{Built, Selection};
-use crate::backend::{Backend, Config, Interrupted, Prepared, Size};
+use crate::backend::{Backend, Config, Interrupted};
 use crate::error::{Error, Result};
 use crate::results::journal::{self, Journal, JournalWriter};
 use crate::results::record::{
@@ -18,6 +19,9 @@ use crate::results::statistics;
 use crate::results::summary::Run;
 use crate::scene::Scene;
 use std::collections::{HashMap, VecDeque};
+
+/// Structures are built until so many bytes wait to be brought to the device together.
+const BATCH_BYTES: u64 = 512 << 20;
 
 /// An opened device, and why it was taken.
 pub struct Opened {
@@ -133,22 +137,22 @@ fn derive(out: &std::path::Path) -> Result<Outcome> {
 }
 
 /// A running sweep.
-struct Sweep<'a, 'j> {
-    context: Context<'a>,
+pub(super) struct Sweep<'a, 'j> {
+    pub(super) context: Context<'a>,
     threads: usize,
     /// `None` after it was lost, until something needs it again.
-    device: Option<Opened>,
+    pub(super) device: Option<Opened>,
     device_name: String,
     open: &'a dyn Fn() -> Result<Opened>,
-    earlier: Earlier,
-    journal: &'j mut JournalWriter,
+    pub(super) earlier: Earlier,
+    pub(super) journal: &'j mut JournalWriter,
 }
 
-/// A structure and its rows that are still to be measured: which path, which size.
-type Waiting<'p> = (&'p Selection, VecDeque<(usize, Size)>);
+/// A structure and its rows that are still to be measured.
+type Waiting<'p> = (&'p Selection, VecDeque<Place>);
 
 impl Sweep<'_, '_> {
-    fn say(&mut self, event: Event) {
+    pub(super) fn say(&mut self, event: Event) {
         (self.context.watch)(event);
     }
 
@@ -180,38 +184,63 @@ impl Sweep<'_, '_> {
             verifier: Verifier::new(&scene, &reference.structure)?,
             images: HashMap::new(),
         };
-        // Each distinct tree is built once, serves all traversals over it, and is freed before the next is built.
         let mut waiting: Vec<Waiting> =
             plan.selections(what).into_iter().map(|s| (s, self.waiting(&mut subject, s))).collect();
         waiting.retain(|(_, rows)| !rows.is_empty());
         if waiting.is_empty() && pictures::are_there(self.context.out, &subject.record.name) {
             return Ok(());
         }
-        while let Some(&(first, _)) = waiting.first() {
-            self.context.check_interrupt()?;
-            let (same, others): (Vec<Waiting>, Vec<Waiting>) =
-                waiting.into_iter().partition(|(s, _)| s.build_key() == first.build_key());
-            waiting = others;
-            if first.build_key() == reference_selection.build_key() {
-                self.structures(&mut subject, same, &reference)?;
-                continue;
-            }
-            self.say(Event::Doing(format!("building {} of {}", first.name(), scene.name)));
-            match self.build(first, &scene) {
-                Ok(built) => self.structures(&mut subject, same, &built)?,
-                // What cannot be built for this scene is no reason to leave the others unmeasured.
-                Err(Error::Device(message)) => {
-                    for (selection, rows) in same {
-                        for (path, size) in rows {
-                            self.unable(&subject, selection, None, path, size, &message)?;
-                        }
-                    }
-                }
-                Err(other) => return Err(other),
-            }
+        while !waiting.is_empty() {
+            let trees = self.trees(&subject, &mut waiting, &reference, &reference_selection.build_key())?;
+            let members = trees.iter().flat_map(|(own, waiting)| {
+                let built = own.as_ref().unwrap_or(&reference);
+                waiting.iter().map(move |(selection, rows)| Member::new(selection, built, rows.clone()))
+            });
+            self.batch(&mut subject, members.collect())?;
         }
         // Last: what is measured matters more where the disk is about to be full
         self.pictures(&subject, &reference)
+    }
+
+    /// Build as many distinct trees as are held at a time; each serves all traversals over it. `None` stands for the
+    /// reference tree, which is there already.
+    fn trees<'p>(
+        &mut self,
+        subject: &Subject,
+        waiting: &mut Vec<Waiting<'p>>,
+        reference: &Built,
+        reference_key: &str,
+    ) -> Result<Vec<(Option<Built>, Vec<Waiting<'p>>)>> {
+        let (mut trees, mut bytes) = (Vec::new(), 0);
+        while bytes < BATCH_BYTES
+            && let Some(&(first, _)) = waiting.first()
+        {
+            self.context.check_interrupt()?;
+            let same: Vec<Waiting> = waiting.extract_if(.., |(s, _)| s.build_key() == first.build_key()).collect();
+            let own = if reference_key == first.build_key() {
+                None
+            } else {
+                self.say(Event::Doing(format!("building {} of {}", first.name(), subject.record.name)));
+                match self.build(first, subject.scene) {
+                    Ok(built) => Some(built),
+                    // What cannot be built for this scene is no reason to leave the others unmeasured.
+                    Err(Error::Device(message)) => {
+                        for (selection, rows) in same {
+                            for place in rows {
+                                self.unable(subject, selection, None, place, &message)?;
+                            }
+                        }
+                        continue;
+                    }
+                    Err(other) => return Err(other),
+                }
+            };
+            // On the device once for each traversal, the geometry with it
+            let sizes = memory(own.as_ref().unwrap_or(reference), subject.scene, None);
+            bytes += (sizes.structure_bytes + sizes.geometry_bytes) * same.len() as u64;
+            trees.push((own, same));
+        }
+        Ok(trees)
     }
 
     /// Build a structure as often as the plan says; the time is the median.
@@ -231,7 +260,7 @@ impl Sweep<'_, '_> {
 
     /// The rows of a structure on a scene that no earlier session settled. The images of those that one did stay, to
     /// compare others with.
-    fn waiting(&mut self, subject: &mut Subject, selection: &Selection) -> VecDeque<(usize, Size)> {
+    fn waiting(&mut self, subject: &mut Subject, selection: &Selection) -> VecDeque<Place> {
         let plan = self.context.plan;
         let mut waiting = VecDeque::new();
         for Task { config, size, frames } in plan.tasks(&subject.what, selection) {
@@ -270,102 +299,13 @@ impl Sweep<'_, '_> {
         }
     }
 
-    /// Measure all traversals over one built structure.
-    fn structures(&mut self, subject: &mut Subject, waiting: Vec<Waiting>, built: &Built) -> Result<()> {
-        waiting.into_iter().try_for_each(|(selection, rows)| self.structure(subject, selection, rows, built))
-    }
-
-    /// Measure all configurations of one structure and traversal. A lost device costs the configuration that lost it,
-    /// and is opened again for the next.
-    fn structure(
-        &mut self,
-        subject: &mut Subject,
-        selection: &Selection,
-        mut waiting: VecDeque<(usize, Size)>,
-        built: &Built,
-    ) -> Result<()> {
-        let scene = subject.scene;
-        let mut candidate = Candidate { selection, built, memory: Memory::default(), small: HashMap::new() };
-        let mut recorded = false;
-        while !waiting.is_empty() {
-            // Held here, so that what is prepared on the device may borrow it while `self` writes records.
-            let device = match self.device.take() {
-                Some(device) => device,
-                None => self.reopen()?,
-            };
-            let lost = {
-                let prepared = device.backend.prepare(scene, &built.structure, selection.method());
-                if !recorded {
-                    recorded = true;
-                    candidate.memory = memory(built, scene, prepared.as_ref().ok().map(|p| p.allocated()));
-                    let mut record = configuration::structure_record(subject, selection, built);
-                    record.memory = candidate.memory;
-                    if !self.earlier.has_structure(&record) {
-                        self.journal.write(&Record::Structure(Box::new(record.clone())))?;
-                    }
-                    self.say(Event::Built(&record));
-                }
-                match prepared {
-                    Ok(mut prepared) => self.configurations(subject, &mut candidate, &mut *prepared, &mut waiting)?,
-                    // It does not fit, whatever the size of the image.
-                    Err(Error::Device(message)) => {
-                        for (path, size) in waiting.drain(..) {
-                            self.unable(subject, selection, Some(&candidate), path, size, &message)?;
-                        }
-                        false
-                    }
-                    Err(error @ Error::DeviceLost(_)) => {
-                        if let Some((path, size)) = waiting.pop_front() {
-                            self.unable(subject, selection, Some(&candidate), path, size, &error.to_string())?;
-                        }
-                        true
-                    }
-                    Err(other) => return Err(other),
-                }
-            };
-            if !lost {
-                self.device = Some(device);
-            }
-        }
-        Ok(())
-    }
-
-    /// Measure what is waiting, one configuration after another; true if the device was lost on the way.
-    fn configurations(
-        &mut self,
-        subject: &mut Subject,
-        candidate: &mut Candidate,
-        prepared: &mut dyn Prepared,
-        waiting: &mut VecDeque<(usize, Size)>,
-    ) -> Result<bool> {
-        while let Some((path, size)) = waiting.pop_front() {
-            self.context.check_interrupt()?;
-            let (config, name) = (subject.paths[path].0, candidate.selection.name());
-            let Size { width, height } = size;
-            self.say(Event::Doing(format!("{} {name} {config:?} {width}x{height}", subject.record.name)));
-            match configuration::measure(&mut self.context, subject, candidate, prepared, path, size) {
-                Ok(record) => self.finish(record)?,
-                Err(error @ (Error::Device(_) | Error::DeviceLost(_))) => {
-                    let lost = matches!(error, Error::DeviceLost(_));
-                    self.unable(subject, candidate.selection, Some(candidate), path, size, &error.to_string())?;
-                    if lost {
-                        return Ok(true);
-                    }
-                }
-                Err(other) => return Err(other),
-            }
-        }
-        Ok(false)
-    }
-
     /// An error row for a configuration that cannot run.
-    fn unable(
+    pub(super) fn unable(
         &mut self,
         subject: &Subject,
         selection: &Selection,
         candidate: Option<&Candidate>,
-        path: usize,
-        size: Size,
+        (path, size): Place,
         message: &str,
     ) -> Result<()> {
         let mut record = configuration::blank(self.context.plan, subject, selection, path, size);
@@ -377,14 +317,14 @@ impl Sweep<'_, '_> {
     }
 
     /// Bring a record to the disk.
-    fn finish(&mut self, record: ConfigurationRecord) -> Result<()> {
+    pub(super) fn finish(&mut self, record: ConfigurationRecord) -> Result<()> {
         self.journal.write(&Record::Configuration(Box::new(record.clone())))?;
         self.say(Event::Finished(&record));
         Ok(())
     }
 
     /// Open the device again after it was lost. It must be the same: a table of two devices would be worthless.
-    fn reopen(&mut self) -> Result<Opened> {
+    pub(super) fn reopen(&mut self) -> Result<Opened> {
         self.say(Event::Note("the device was lost and is opened again".into()));
         let device = (self.open)().map_err(|e| Error::DeviceLost(format!("it cannot be opened again: {e}")))?;
         let now = &device.backend.info().name;

@@ -51,7 +51,7 @@ pub struct Arguments {
     /// Timed passes over each path; a frame's time is the median over them
     #[arg(long, value_name = "N")]
     passes: Option<usize>,
-    /// Untimed frames before the first pass
+    /// Untimed frames before each pass
     #[arg(long, value_name = "FRAMES")]
     warmup: Option<usize>,
     /// Folder for the results, new or empty [default: results/TIME-DEVICE]

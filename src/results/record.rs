@@ -118,7 +118,7 @@ pub struct PlanRecord {
     pub configurations: usize,
     /// Timed passes over each path.
     pub passes: usize,
-    /// Untimed frames before the first pass.
+    /// Untimed frames before each pass.
     pub warmup_frames: usize,
     /// How often each structure is built; its time is the median. 0 in records from before there was a choice: once.
     #[serde(default)]
@@ -363,6 +363,9 @@ pub struct ConfigurationRecord {
     pub timing_source: Option<TimingSource>,
     /// Every timed frame.
     pub samples: Option<Samples>,
+    /// Rows whose passes took turns, this one among them; 0 in records from before they did: each was timed on its own.
+    #[serde(default)]
+    pub turns: usize,
     /// Seconds spent on verification; that of the small image counts for the first size.
     pub verification_s: f64,
     /// Seconds spent on counting.
@@ -399,6 +402,7 @@ impl ConfigurationRecord {
             build_threads: 0,
             timing_source: None,
             samples: None,
+            turns: 0,
             verification_s: 0.0,
             counting_s: 0.0,
         }

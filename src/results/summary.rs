@@ -13,6 +13,7 @@ use super::statistics::{self, FrameStatistics};
 use crate::backend::{Config, DeviceInfo, DeviceType};
 use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
 use std::path::Path;
 
 /// One row of `summary.csv`.
@@ -78,6 +79,8 @@ pub struct Row {
     pub reflected_pops_per_ray: Option<f64>,
     pub warnings: String,
     pub dispatches: Option<u32>,
+    /// Rows whose passes took turns with this one's; empty in runs of versions that did not.
+    pub turns: Option<usize>,
 }
 
 /// One row of `structures.csv`; empty where a column has no meaning.
@@ -223,6 +226,7 @@ impl Row {
             reflected_pops_per_ray: per_ray(2, pops),
             warnings: record.warnings.join("; "),
             dispatches: record.dispatches,
+            turns: (record.turns > 0).then_some(record.turns),
         }
     }
 }
@@ -275,11 +279,19 @@ impl Run {
                 scenes.push(scene.clone());
             }
         }
+        // Rows of a structure stand together, though it took turns with others
+        let key = |c: &ConfigurationRecord| (c.scene.name.clone(), c.structure.clone(), c.variant.clone());
+        let mut first: HashMap<_, usize> = HashMap::new();
+        for (place, record) in journal.configurations.iter().enumerate() {
+            first.entry(key(record)).or_insert(place);
+        }
+        let mut records: Vec<&ConfigurationRecord> = journal.configurations.iter().collect();
+        records.sort_by_key(|record| (scenes.iter().position(|s| *s == record.scene), first[&key(record)]));
         Run {
             run: journal.provenance.clone(),
             scenes,
             structures: journal.structures.iter().map(StructureRow::new).collect(),
-            configurations: journal.configurations.iter().map(|c| Row::new(device, c)).collect(),
+            configurations: records.into_iter().map(|record| Row::new(device, record)).collect(),
             resumed: journal.resumed.clone(),
             end: journal.end.clone(),
         }

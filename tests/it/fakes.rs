@@ -15,7 +15,7 @@ use rtbench::results::record::{
 };
 use rtbench::scene::Scene;
 use rtbench::{Error, Result};
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
 pub fn provenance() -> Provenance {
@@ -113,6 +113,8 @@ pub enum Fault {
     TimedDiffers,
     /// Preparing fails: too large.
     NoRoom,
+    /// Preparing fails while anything else is prepared.
+    NoRoomBeside,
     /// Lost while timing PS, once.
     LostOnce,
 }
@@ -124,13 +126,23 @@ pub struct Faulty {
     fault: Fault,
     traversal: Traversal,
     spent: Rc<Cell<bool>>,
+    /// What is prepared at the moment.
+    prepared: Cell<usize>,
+    /// Every path that was timed: the traversal, and the number of frames.
+    timed: Rc<RefCell<Vec<(Traversal, usize)>>>,
 }
 
 impl Faulty {
     pub fn new(fault: Fault, traversal: Traversal, spent: Rc<Cell<bool>>) -> Faulty {
         let inner = CpuBackend::new(1).unwrap();
         let info = inner.info().clone();
-        Faulty { inner, info, fault, traversal, spent }
+        Faulty { inner, info, fault, traversal, spent, prepared: Cell::new(0), timed: Rc::default() }
+    }
+
+    /// Writes down what is timed.
+    pub fn watched(mut self, timed: Rc<RefCell<Vec<(Traversal, usize)>>>) -> Faulty {
+        self.timed = timed;
+        self
     }
 
     /// Under another name.
@@ -155,15 +167,26 @@ impl Backend for Faulty {
         if fault == Fault::NoRoom {
             return Err(Error::Device("the structure needs 5 GiB, the device has 1 GiB".into()));
         }
+        if fault == Fault::NoRoomBeside && self.prepared.get() > 0 {
+            return Err(Error::Device("out of memory".into()));
+        }
         let inner = self.inner.prepare(scene, structure, method)?;
-        Ok(Box::new(FaultyPrepared { inner, fault, spent: &self.spent }))
+        self.prepared.set(self.prepared.get() + 1);
+        Ok(Box::new(FaultyPrepared { inner, fault, traversal: method.traversal, device: self }))
     }
 }
 
 struct FaultyPrepared<'a> {
     inner: Box<dyn Prepared + 'a>,
     fault: Fault,
-    spent: &'a Cell<bool>,
+    traversal: Traversal,
+    device: &'a Faulty,
+}
+
+impl Drop for FaultyPrepared<'_> {
+    fn drop(&mut self) {
+        self.device.prepared.set(self.device.prepared.get() - 1);
+    }
 }
 
 impl Prepared for FaultyPrepared<'_> {
@@ -200,9 +223,10 @@ impl Prepared for FaultyPrepared<'_> {
         size: Size,
         interrupted: Interrupted,
     ) -> Result<Vec<FrameTime>> {
-        if self.fault == Fault::LostOnce && config == Config::PS && !self.spent.replace(true) {
+        if self.fault == Fault::LostOnce && config == Config::PS && !self.device.spent.replace(true) {
             return Err(Error::DeviceLost("the driver\nreset".into()));
         }
+        self.device.timed.borrow_mut().push((self.traversal, views.len()));
         self.inner.time_path(config, views, size, interrupted)
     }
 

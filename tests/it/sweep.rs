@@ -3,11 +3,12 @@
 use crate::fakes::{Fault, Faulty};
 use rtbench::accel::{Selection, Traversal};
 use rtbench::backend::{Config, Size};
+use rtbench::bench::batch::order;
 use rtbench::bench::plan::{Plan, Request, check_size, parse_list, parse_size};
 use rtbench::bench::resume::Earlier;
 use rtbench::bench::sweep::{self, Event, Job, Opened, Outcome};
 use rtbench::results::journal::{FILE_NAME, Journal};
-use rtbench::results::record::{Failure, Status};
+use rtbench::results::record::{ConfigurationRecord, Failure, Status};
 use rtbench::{Error, Result};
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
@@ -85,9 +86,16 @@ fn back(spent: Rc<Cell<bool>>) -> Result<Opened> {
     Ok(device(Faulty::new(Fault::LostOnce, Traversal::Grid, spent)))
 }
 
-/// Structure, configuration and status of each row.
+/// Structure, configuration and status of each row, the grid's rows first.
 fn rows(journal: &Journal) -> Vec<(&str, Config, Status)> {
-    journal.configurations.iter().map(|c| (c.structure.as_str(), c.config, c.status)).collect()
+    let mut rows: Vec<_> = journal.configurations.iter().map(|c| (c.structure.as_str(), c.config, c.status)).collect();
+    rows.sort_by_key(|(structure, ..)| *structure != "grid");
+    rows
+}
+
+/// The row of the grid with shadows.
+fn grid_ps(journal: &Journal) -> &ConfigurationRecord {
+    journal.configurations.iter().find(|row| row.structure == "grid" && row.config == Config::PS).unwrap()
 }
 
 const GOOD_STACK: [(&str, Config, Status); 2] =
@@ -169,7 +177,61 @@ fn a_lost_device_costs_one_row() {
     assert_eq!((outcome.disagreeing, outcome.failed, swept.opened_again), (0, 1, 1));
     let lost = [("grid", Config::P, Status::Ok), ("grid", Config::PS, Status::Error)];
     assert_eq!(rows(&swept.journal), [lost, GOOD_STACK].concat());
-    assert_eq!(swept.journal.configurations[1].message, "device lost: the driver reset");
+    assert_eq!(grid_ps(&swept.journal).message, "device lost: the driver reset");
+}
+
+#[test]
+fn what_does_not_fit_beside_others_is_measured_alone() {
+    let plan = Plan::new(&Request { structures: vec!["bvh-stack,grid".into()], ..request() }).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let swept = sweep_into(folder, &plan, Earlier::default(), Fault::NoRoomBeside, usize::MAX, &back);
+    assert_eq!((swept.outcome.unwrap().failed, swept.journal.structures.len()), (0, 2));
+    let good_grid = [("grid", Config::P, Status::Ok), ("grid", Config::PS, Status::Ok)];
+    assert_eq!(rows(&swept.journal), [good_grid, GOOD_STACK].concat());
+    assert!(swept.journal.configurations.iter().all(|row| row.turns == 1));
+}
+
+#[test]
+fn structures_take_turns_pass_by_pass() {
+    let timed = Rc::new(RefCell::new(Vec::new()));
+    let backend = Faulty::new(Fault::None, Traversal::Grid, Rc::default()).watched(timed.clone());
+    let request = Request { configs: vec!["P".into()], passes: Some(4), warmup_frames: Some(1), ..request() };
+    let folder = tempfile::tempdir().unwrap();
+    let outcome = sweep::run(Job {
+        plan: &Plan::new(&request).unwrap(),
+        out: folder.path(),
+        earlier: Earlier::default(),
+        threads: 1,
+        arguments: vec!["rtbench".into()],
+        device: device(backend),
+        open: &|| back(Rc::default()),
+        interrupted: &|| false,
+        watch: &mut |_| (),
+    });
+    assert_eq!(outcome.unwrap().failed, 0);
+    // A frame to warm up, then the path's two, of one and then of the other, and back
+    let (grid, stack) = (Traversal::Grid, Traversal::BvhStack);
+    let turns = [grid, stack, stack, grid, stack, grid, grid, stack];
+    let expected: Vec<_> = turns.into_iter().flat_map(|who| [(who, 1), (who, 2)]).collect();
+    assert_eq!(*timed.borrow(), expected);
+    let journal = Journal::read(&folder.path().join(FILE_NAME)).unwrap();
+    assert!(journal.configurations.iter().all(|row| row.turns == 2), "{:?}", rows(&journal));
+}
+
+#[test]
+fn turns_are_fair() {
+    assert_eq!((order(0, 3), order(1, 3)), (vec![], vec![0]));
+    for count in 2..7 {
+        // Within two passes everybody has the same mean place; within all everybody begins as often as the others
+        let mut first = vec![0; count];
+        for pair in 0..count {
+            let (there, back) = (order(count, 2 * pair), order(count, 2 * pair + 1));
+            let place = |order: &[usize], who| order.iter().position(|&other| other == who).unwrap();
+            assert!((0..count).all(|who| place(&there, who) + place(&back, who) == count - 1), "{there:?} {back:?}");
+            first[there[0]] += 1;
+        }
+        assert!(first.iter().all(|&times| times == 1), "{first:?}");
+    }
 }
 
 #[test]
@@ -180,10 +242,11 @@ fn a_device_that_does_not_come_back_ends_the_sweep() {
         let swept = swept(Fault::LostOnce, usize::MAX, again);
         let error = swept.outcome.unwrap_err();
         assert!(matches!(error, Error::DeviceLost(_)) && error.exit_code() == 2, "{error}");
-        assert_eq!(swept.journal.configurations.len(), 2);
+        // Both rows with primary rays alone, and the one that lost it
+        assert_eq!(swept.journal.configurations.len(), 3);
         assert!(!swept.journal.end.unwrap().complete);
         let summary = std::fs::read_to_string(swept.folder.path().join("summary.csv")).unwrap();
-        assert_eq!(summary.lines().count(), 3);
+        assert_eq!(summary.lines().count(), 4);
     }
 }
 
@@ -192,7 +255,8 @@ fn an_interrupt_keeps_the_rows() {
     let swept = swept(Fault::None, 1, &back);
     let error = swept.outcome.unwrap_err();
     assert!(matches!(error, Error::Interrupted) && error.exit_code() == 130);
-    assert_eq!(swept.journal.configurations.len(), 1);
+    // What had taken turns with the first row was measured as well
+    assert_eq!(swept.journal.configurations.len(), 2);
     assert!(swept.journal.end.unwrap().interrupted);
     for file in ["summary.csv", "structures.csv", "run.json"] {
         assert!(swept.folder.path().join(file).is_file(), "{file}");
@@ -209,11 +273,11 @@ fn a_run_is_taken_up_where_it_was_interrupted() {
     bytes.extend(b"{\"record\":\"configuration\",\"scene\":");
     std::fs::write(&path, bytes).unwrap();
     let earlier = Earlier::read(folder.path()).unwrap();
-    assert_eq!((earlier.settled(), earlier.is_complete()), (1, false));
+    assert_eq!((earlier.settled(), earlier.is_complete()), (2, false));
     let plan = Plan::new(&request()).unwrap();
     let second = sweep_into(folder, &plan, earlier, Fault::None, usize::MAX, &back);
     let outcome = second.outcome.unwrap();
-    assert_eq!((outcome.disagreeing, outcome.failed, second.finished), (0, 0, 3));
+    assert_eq!((outcome.disagreeing, outcome.failed, second.finished), (0, 0, 2));
     let journal = &second.journal;
     assert_eq!((journal.configurations.len(), journal.structures.len(), journal.resumed.len()), (4, 2, 1));
     assert_eq!(journal.configurations[0], kept);
@@ -235,7 +299,7 @@ fn a_run_is_taken_up_where_it_was_interrupted() {
 fn a_row_that_lost_the_device_is_tried_again_and_a_wrong_one_is_not() {
     let plan = Plan::new(&request()).unwrap();
     let lost = swept(Fault::LostOnce, usize::MAX, &back);
-    assert_eq!(lost.journal.configurations[1].failure, Some(Failure::Device));
+    assert_eq!(grid_ps(&lost.journal).failure, Some(Failure::Device));
     let earlier = Earlier::read(lost.folder.path()).unwrap();
     assert_eq!((earlier.settled(), earlier.is_complete()), (3, false));
     let again = sweep_into(lost.folder, &plan, earlier, Fault::None, usize::MAX, &back);
