@@ -34,6 +34,9 @@ impl<'b> Member<'b> {
     }
 }
 
+/// What is on the device, member by member; `None` for one that has nothing to measure or has to wait.
+type OnDevice<'d> = Vec<Option<Box<dyn Prepared + 'd>>>;
+
 /// A row that is being timed.
 struct Turn<'p> {
     /// Whose row it is.
@@ -90,8 +93,8 @@ impl Sweep<'_, '_> {
         subject: &Subject<'s>,
         device: &'d Opened,
         members: &mut [Member<'b>],
-    ) -> Result<Option<Vec<Option<Box<dyn Prepared + 'd>>>>> {
-        let mut there: Vec<Option<Box<dyn Prepared>>> = Vec::new();
+    ) -> Result<Option<OnDevice<'d>>> {
+        let mut there: OnDevice = Vec::new();
         for member in members {
             if member.waiting.is_empty() {
                 there.push(None);
@@ -149,12 +152,7 @@ impl Sweep<'_, '_> {
 
     /// Measure what is waiting on the structures that are there, a configuration and size after another; true if the device
     /// was lost on the way.
-    fn rows(
-        &mut self,
-        subject: &mut Subject,
-        members: &mut [Member],
-        prepared: &mut [Option<Box<dyn Prepared + '_>>],
-    ) -> Result<bool> {
+    fn rows(&mut self, subject: &mut Subject, members: &mut [Member], prepared: &mut OnDevice) -> Result<bool> {
         loop {
             let there = members.iter().zip(prepared.iter()).filter(|(_, prepared)| prepared.is_some());
             let Some(place) = there.filter_map(|(member, _)| member.waiting.front()).next().copied() else {
@@ -173,7 +171,7 @@ impl Sweep<'_, '_> {
         &mut self,
         subject: &mut Subject,
         members: &mut [Member],
-        prepared: &'p mut [Option<Box<dyn Prepared + '_>>],
+        prepared: &'p mut OnDevice<'_>,
         place: Place,
     ) -> Result<Option<Vec<Turn<'p>>>> {
         let mut turns = Vec::new();
