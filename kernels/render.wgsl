@@ -42,10 +42,9 @@ const PRIMARY: u32 = 0u;
 const SHADOW: u32 = 1u;
 const REFLECTED: u32 = 2u;
 
-fn primary_ray(column: u32, row: u32) -> Ray {
-    let x = f32(column) + 0.5;
-    let y = f32(row) + 0.5;
-    return ray_along(frame.origin, unit(frame.corner + frame.right * x + frame.down * y));
+// Through a point of the image, in pixels from its top left corner.
+fn primary_ray(point: vec2<f32>) -> Ray {
+    return ray_along(frame.origin, unit(frame.corner + frame.right * point.x + frame.down * point.y));
 }
 
 // Consecutive invocations lie in squares (Morton order) as far as the group's shape allows, so that those that share an
@@ -88,14 +87,15 @@ fn row_of_groups(y: u32, rows: u32) -> u32 {
     return place * THREADS + thread;
 }
 
-// The pixel through which a pixel's ray goes: itself, or with FOUR_RAYS one of four for the whole work-group.
-fn seen_through(column: u32, row: u32) -> vec2<u32> {
+// Where the ray of a pixel goes through the image: its middle, or with FOUR_RAYS one of four points for the whole
+// work-group. These lie at a quarter and three quarters of the image's sides: the same rays, whatever its resolution.
+fn seen_through(column: u32, row: u32) -> vec2<f32> {
     if (FOUR_RAYS) {
-        let x = frame.width / 4u + (column / GROUP_WIDTH & 1u) * (frame.width / 2u);
-        let y = frame.height / 4u + (row / GROUP_HEIGHT & 1u) * (frame.height / 2u);
-        return vec2<u32>(x, y);
+        let x = f32(frame.width) * (0.25 + 0.5 * f32(column / GROUP_WIDTH & 1u));
+        let y = f32(frame.height) * (0.25 + 0.5 * f32(row / GROUP_HEIGHT & 1u));
+        return vec2<f32>(x, y);
     }
-    return vec2<u32>(column, row);
+    return vec2<f32>(f32(column) + 0.5, f32(row) + 0.5);
 }
 
 @compute @workgroup_size(GROUP_SIZE)
@@ -111,8 +111,7 @@ fn main(
     let inside = band_column < frame.columns && band_row < frame.rows;
     let column = frame.first_column + band_column;
 
-    let pixel = seen_through(column, frame.first_row + band_row);
-    var ray = primary_ray(pixel.x, pixel.y);
+    var ray = primary_ray(seen_through(column, frame.first_row + band_row));
     var alive = inside;
     var colour = vec3<f32>(0.0, 0.0, 0.0);
     var weight = 1.0; // product of the reflectivities on the way

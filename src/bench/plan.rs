@@ -107,13 +107,20 @@ impl Plan {
         let mut skipped = Vec::new();
         let mut wanted = Vec::new();
         for scene in &request.scenes {
-            wanted.push(PresetScene {
-                scene: scene.clone(),
-                structures: None,
-                configs: None,
-                resolutions: None,
-                frames: None,
-            });
+            // A scene that the preset names keeps what is said of it there. Other structures are compared as its first part
+            // says: the parts behind it are there for the structures that they name.
+            let parts = preset.scene.iter().filter(|part| part.scene == *scene);
+            let before = wanted.len();
+            wanted.extend(parts.take(if request.structures.is_empty() { usize::MAX } else { 1 }).cloned());
+            if wanted.len() == before {
+                wanted.push(PresetScene {
+                    scene: scene.clone(),
+                    structures: None,
+                    configs: None,
+                    resolutions: None,
+                    frames: None,
+                });
+            }
         }
         if request.scenes.is_empty() {
             for part in preset.scene {

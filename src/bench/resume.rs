@@ -38,6 +38,11 @@ impl Earlier {
         Some(&self.journal.as_ref()?.provenance)
     }
 
+    /// Bytes that have been read of its journal.
+    pub fn length(&self) -> u64 {
+        self.journal.as_ref().map_or(0, |journal| journal.length)
+    }
+
     /// Number of rows that need not be measured again.
     pub fn settled(&self) -> usize {
         self.settled.len()

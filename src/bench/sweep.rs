@@ -99,7 +99,7 @@ pub fn run(job: Job) -> Result<Outcome> {
     job.earlier.check(&provenance)?;
     let mut journal = if job.earlier.provenance().is_some() {
         let Provenance { started, arguments, environment, .. } = provenance;
-        JournalWriter::resume(job.out, Resumed { started, arguments, environment })?
+        JournalWriter::resume(job.out, Resumed { started, arguments, environment }, job.earlier.length())?
     } else {
         JournalWriter::create(job.out, provenance)?
     };
@@ -122,6 +122,8 @@ pub fn run(job: Job) -> Result<Outcome> {
         load_average: environment::load_average(),
         message: ended.as_ref().err().map(Error::to_string).unwrap_or_default(),
     }));
+    // And with it its lock
+    drop(journal);
     let derived = derive(out);
     // What went wrong first is what the user has to know.
     ended.and(closed).and(derived)
@@ -336,10 +338,12 @@ impl Sweep<'_, '_> {
     }
 }
 
-/// Sizes: as allocated on the device (geometry, structure) where it was, in main memory otherwise.
+/// Sizes: as allocated on the device (geometry, structure) where it was, otherwise as the CPU twins hold it.
 pub fn memory(built: &Built, scene: &Scene, allocated: Option<(u64, u64)>) -> Memory {
-    let geometry =
-        size_of_val(&scene.vertices[..]) + size_of_val(&scene.materials[..]) + size_of_val(&scene.lights[..]);
+    let geometry = size_of_val(&scene.vertices[..])
+        + size_of_val(&scene.materials[..])
+        + scene.triangles.len() * size_of::<u32>()
+        + size_of_val(&scene.lights[..]);
     let (geometry_bytes, structure_bytes) = allocated.unwrap_or((geometry as u64, built.structure.structure_bytes()));
     Memory { structure_bytes, geometry_bytes, thesis_bytes: built.structure.thesis_bytes(scene) }
 }

@@ -39,24 +39,23 @@ pub struct Frame<'a> {
 /// The primary ray of a pixel (rows from the top), exactly as a frame casts it.
 pub fn primary_ray(method: Method, view: &View, size: Size, pixel: usize) -> GivenRay {
     let grid = view.camera.pixel_grid(size.width, size.height);
-    let (column, row) = seen_by(method, size, pixel as u32 % size.width, pixel as u32 / size.width);
-    GivenRay { origin: grid.origin, direction: pixel_direction(&grid, column, row).into() }
+    let point = seen_through(method, size, pixel as u32 % size.width, pixel as u32 / size.width);
+    GivenRay { origin: grid.origin, direction: direction_through(&grid, point).into() }
 }
 
-/// The pixel through which the ray of a pixel goes: itself, or one of four.
-fn seen_by(method: Method, size: Size, column: u32, row: u32) -> (u32, u32) {
+/// Where the ray of a pixel goes through the image, in pixels from its top left corner: its middle, or one of four points
+/// at a quarter and three quarters of the image's sides.
+fn seen_through(method: Method, size: Size, column: u32, row: u32) -> [f32; 2] {
     match method.pattern {
-        Pattern::Image => (column, row),
+        Pattern::Image => [column as f32 + 0.5, row as f32 + 0.5],
         Pattern::Four => {
-            let one_of = |place: u32, group: u32, side: u32| side / 4 + ((place / group) & 1) * (side / 2);
-            (one_of(column, method.group.width, size.width), one_of(row, method.group.height, size.height))
+            let one_of = |place: u32, group: u32, side: u32| side as f32 * (0.25 + 0.5 * ((place / group) & 1) as f32);
+            [one_of(column, method.group.width, size.width), one_of(row, method.group.height, size.height)]
         }
     }
 }
 
-fn pixel_direction(grid: &PixelGrid, column: u32, row: u32) -> Vec3A {
-    let x = column as f32 + 0.5;
-    let y = row as f32 + 0.5;
+fn direction_through(grid: &PixelGrid, [x, y]: [f32; 2]) -> Vec3A {
     unit(Vec3A::from(grid.corner) + Vec3A::from(grid.right) * x + Vec3A::from(grid.down) * y)
 }
 
@@ -84,8 +83,8 @@ impl<'a> Frame<'a> {
     }
 
     fn primary_ray(&self, column: u32, row: u32) -> Ray {
-        let (column, row) = seen_by(self.method, self.size, column, row);
-        Ray::new(self.grid.origin.into(), pixel_direction(&self.grid, column, row))
+        let point = seen_through(self.method, self.size, column, row);
+        Ray::new(self.grid.origin.into(), direction_through(&self.grid, point))
     }
 
     /// Renders the group whose top left pixel is `(column, row)` and hands each pixel inside the image to `store` with

@@ -4,8 +4,8 @@ use super::files;
 use super::record::{ConfigurationRecord, End, Identity, Provenance, Record, Resumed, SCHEMA, StructureRecord};
 use crate::error::{Error, Result};
 use std::collections::HashMap;
-use std::fs::{File, OpenOptions};
-use std::io::{ErrorKind, Write};
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// File name inside a run's folder.
@@ -32,22 +32,28 @@ impl JournalWriter {
             .create_new(true)
             .open(&path)
             .map_err(|source| Error::output(&path, source))?;
+        lock(&path, &file)?;
         let mut writer = JournalWriter { path, file, length: 0 };
         writer.write(&Record::Run(Box::new(provenance)))?;
         Ok(writer)
     }
 
     /// Opens the journal of a run that is taken up again, cuts off what is left of a half-written last line, and notes
-    /// the resumption.
+    /// the resumption. `known` is the number of bytes that the caller has read of it.
     ///
     /// # Errors
-    /// [`Error::Output`].
-    pub fn resume(folder: &Path, resumed: Resumed) -> Result<JournalWriter> {
+    /// [`Error::Output`], or [`Error::Input`] if another sweep is writing it or has written to it since.
+    pub fn resume(folder: &Path, resumed: Resumed, known: u64) -> Result<JournalWriter> {
         let path = folder.join(FILE_NAME);
         let output = |source| Error::output(&path, source);
-        let bytes = std::fs::read(&path).map_err(output)?;
+        let mut file = OpenOptions::new().read(true).append(true).open(&path).map_err(output)?;
+        lock(&path, &file)?;
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes).map_err(output)?;
+        if bytes.len() as u64 != known {
+            return Err(being_written(&path));
+        }
         let length = bytes.iter().rposition(|&b| b == b'\n').map_or(0, |end| end as u64 + 1);
-        let file = OpenOptions::new().append(true).open(&path).map_err(output)?;
         file.set_len(length).map_err(output)?;
         let mut writer = JournalWriter { path, file, length };
         writer.write(&Record::Resumed(Box::new(resumed)))?;
@@ -83,6 +89,18 @@ impl JournalWriter {
     }
 }
 
+/// Keeps other sweeps away from a journal for as long as the file is open. Where the file system knows no locks, nothing does.
+fn lock(path: &Path, file: &File) -> Result<()> {
+    match file.try_lock() {
+        Err(TryLockError::WouldBlock) => Err(being_written(path)),
+        Err(TryLockError::Error(_)) | Ok(()) => Ok(()),
+    }
+}
+
+fn being_written(path: &Path) -> Error {
+    Error::file(path, None, "another sweep is writing this run", "wait until it is done, or stop it first")
+}
+
 /// A journal, read back.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Journal {
@@ -98,6 +116,8 @@ pub struct Journal {
     pub end: Option<End>,
     /// What had to be left out, in words: a last line that was cut off.
     pub truncated: Option<String>,
+    /// Bytes of the file.
+    pub length: u64,
 }
 
 impl Journal {
@@ -165,7 +185,10 @@ impl Journal {
             }
         }
         match provenance {
-            Some(provenance) => Ok(Journal { provenance, structures, configurations, resumed, end, truncated }),
+            Some(provenance) => {
+                let length = bytes.len() as u64;
+                Ok(Journal { provenance, structures, configurations, resumed, end, truncated, length })
+            }
             None => Err(Error::file(path, None, "empty", "the run was killed before it began")),
         }
     }

@@ -170,7 +170,7 @@ pub struct StructureRecord {
 pub struct Memory {
     /// Nodes or cells, and triangle records: as allocated on the device, or in main memory where it was not uploaded.
     pub structure_bytes: u64,
-    /// Vertices, materials and lights: likewise.
+    /// Vertices, materials, every triangle's material and lights: likewise.
     pub geometry_bytes: u64,
     /// What the thesis would have counted (SPEC section 7).
     pub thesis_bytes: u64,

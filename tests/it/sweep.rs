@@ -349,6 +349,64 @@ fn a_run_is_not_taken_up_by_another_program_device_or_plan() {
     assert!(refused(&|_| (), &more).contains("not the same"));
 }
 
+/// Two programs that write one journal would measure the same rows, at the same time.
+#[test]
+fn a_run_that_is_being_written_is_not_taken_up() {
+    let first = swept(Fault::None, 1, &back);
+    let path = first.folder.path().join(FILE_NAME);
+    let text = std::fs::read(&path).unwrap();
+    let plan = Plan::new(&request()).unwrap();
+    let refused = |folder, earlier| {
+        let second = sweep_into(folder, &plan, earlier, Fault::None, usize::MAX, &back);
+        let error = second.outcome.unwrap_err();
+        assert!(matches!(error, Error::Input(_)), "{error}");
+        assert!(error.to_string().contains("another sweep is writing this run"), "{error}");
+        second.folder
+    };
+    let writer = std::fs::File::open(&path).unwrap();
+    writer.lock().unwrap();
+    let folder = refused(first.folder, Earlier::read(path.parent().unwrap()).unwrap());
+    assert_eq!(std::fs::read(&path).unwrap(), text);
+    // One that wrote to it and is done
+    drop(writer);
+    let earlier = Earlier::read(path.parent().unwrap()).unwrap();
+    let more = [&text[..], text.split_inclusive(|&b| b == b'\n').next_back().unwrap()].concat();
+    std::fs::write(&path, &more).unwrap();
+    let folder = refused(folder, earlier);
+    assert_eq!(std::fs::read(&path).unwrap(), more);
+    // Alone it goes on
+    std::fs::write(&path, &text).unwrap();
+    let earlier = Earlier::read(path.parent().unwrap()).unwrap();
+    assert!(sweep_into(folder, &plan, earlier, Fault::None, usize::MAX, &back).outcome.is_ok());
+}
+
+#[test]
+fn a_scene_that_the_preset_names_keeps_its_own_parts() {
+    let file = tempfile::Builder::new().suffix(".toml").tempfile().unwrap();
+    let preset = "structures = [\"grid\", \"bvh\"]\nconfigs = [\"P\"]\nresolutions = [\"64\"]\npasses = 1\nwarmup_frames = 0\n\
+        [[scene]]\nscene = \"hall\"\nstructures = [\"grid:x=9\"]\n\
+        [[scene]]\nscene = \"scan\"\n\
+        [[scene]]\nscene = \"hall\"\nstructures = [\"kdtree\"]\nresolutions = [\"32\"]\n";
+    std::fs::write(file.path(), preset).unwrap();
+    let plan = |scene: &str, structures: &[&str]| {
+        let plan = Plan::new(&Request {
+            preset: file.path().to_str().unwrap().into(),
+            scenes: vec![scene.into()],
+            structures: structures.iter().map(|s| s.to_string()).collect(),
+            ..Request::default()
+        });
+        let part = |part: &rtbench::bench::plan::Part| {
+            let names = part.selections.iter().map(|s| format!("{} {}", s.name(), s.variant()));
+            (names.collect::<Vec<_>>().join(", "), part.sizes[0].width)
+        };
+        plan.unwrap().parts.iter().map(part).collect::<Vec<_>>()
+    };
+    assert_eq!(plan("hall", &[]), [("grid x=9".into(), 64), ("kdtree default".into(), 32)]);
+    assert_eq!(plan("scan", &[]), [("grid default, bvh default".into(), 64)]);
+    assert_eq!(plan("hall", &["bvh-stack"]), [("bvh-stack default".into(), 64)]);
+    assert_eq!(plan("room", &[]), [("grid default, bvh default".into(), 64)]);
+}
+
 #[test]
 fn presets_are_sound() {
     let plan = Plan::new(&Request { preset: "quick".into(), ..Request::default() }).unwrap();

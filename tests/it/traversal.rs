@@ -288,6 +288,14 @@ fn other_rays_are_the_same_for_all() {
     distances.sort();
     distances.dedup();
     assert!(distances.len() <= 4, "{} different rays", distances.len());
+    // And the same four at every resolution: the test's whole point (figure 5.3)
+    for side in [16, 128, 256] {
+        let (other, _) = counted(&cpu, &scene, "brute:pattern=four", Config::P, Size { width: side, height: side });
+        let group = |pixels: &[CountedPixel], side: usize, x: usize, y: usize| pixels[8 * y * side + 8 * x].t;
+        for (x, y) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+            assert_eq!(group(&other, side as usize, x, y), group(&four, 64, x, y), "{side}");
+        }
+    }
     // The small change of direction finds the same points from both ends
     let (to_light, _) = counted(&cpu, &scene, "bvh-stack:shadows=to-light", Config::PS, SIZE);
     let same = to_light.iter().zip(&plain).filter(|(a, b)| a.pixel == b.pixel).count();

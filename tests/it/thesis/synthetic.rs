@@ -40,8 +40,15 @@ impl Builder {
             message: "".into(),
         };
         let (structures, configurations) = (Vec::new(), Vec::new());
-        let journal =
-            Journal { provenance, structures, configurations, resumed: vec![], end: Some(end), truncated: None };
+        let journal = Journal {
+            provenance,
+            structures,
+            configurations,
+            resumed: vec![],
+            end: Some(end),
+            truncated: None,
+            length: 0,
+        };
         Builder { run: RecordedRun { journal, folder: "nowhere".into() }, noise: 0.0 }
     }
 
