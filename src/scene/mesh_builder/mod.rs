@@ -279,16 +279,6 @@ impl MeshBuilder {
         Ok(index)
     }
 
-    /// [`MeshBuilder::vertex`] of something that has indices: equal ones share a vertex whatever their indices are.
-    fn known_vertex(&mut self, indices: [u32; 2], position: DVec3, normal: DVec3) -> Result<u32, Fault> {
-        if let Some(index) = self.shared.find_indices(indices) {
-            return Ok(index);
-        }
-        let index = self.shared_vertex(position, self.direction(normal))?;
-        self.shared.insert_indices(indices, index);
-        Ok(index)
-    }
-
     /// A normal of any length as the present transform turns it, of length one or zero.
     fn direction(&self, normal: DVec3) -> Vec3 {
         self.frame().direction(normal)

@@ -57,17 +57,26 @@ impl MeshBuilder {
         let mut vertices = std::mem::take(&mut self.corners);
         vertices.clear();
         for (i, &corner) in corners.iter().enumerate() {
+            let indices = indices.get(i).copied().flatten();
+            if let Some(known) = indices.and_then(|indices| self.shared.find_indices(indices)) {
+                vertices.push(known);
+                continue;
+            }
             let given = normals.get(i).copied().unwrap_or(DVec3::ZERO);
             let has_length = has_direction(given);
             if !normals.is_empty() && !has_length {
                 self.warnings.add("normal of no length: the polygon's own taken");
             }
-            vertices.push(match indices.get(i).copied().flatten() {
+            vertices.push(match indices {
                 _ if !has_length => {
                     let normal = *own.get_or_insert_with(|| self.direction(*flat));
                     self.shared_vertex(corner, normal)?
                 }
-                Some(indices) => self.known_vertex(indices, corner, given)?,
+                Some(indices) => {
+                    let vertex = self.shared_vertex(corner, self.direction(given))?;
+                    self.shared.insert_indices(indices, vertex);
+                    vertex
+                }
                 None => self.shared_vertex(corner, self.direction(given))?,
             });
         }

@@ -8,7 +8,7 @@ use super::{Frame, MeshBuilder, unit};
 use crate::math::Vertex;
 use crate::scene::text::Fault;
 use crate::scene::{MAX_ELEMENTS, Material, Triangle};
-use glam::DVec3;
+use glam::{DMat3, DVec2, DVec3, Vec3};
 use std::f64::consts::{PI, TAU};
 
 /// A circle of a surface of revolution.
@@ -29,11 +29,15 @@ impl Circle {
     }
 }
 
-/// Cosines and sines for a number of segments, which rarely changes within a file.
+/// What surfaces of as many segments have in common: cosines and sines, and what spheres in the same frame share.
 #[derive(Default)]
 pub struct Turns {
     around: Vec<[f64; 2]>,
     half: Vec<[f64; 2]>,
+    /// Normals of the surface that was made last, one per vertex.
+    normals: Vec<Vec3>,
+    /// If it was a sphere: what turned them, and whether its inside was seen. Where it is and how large changes nothing.
+    sphere: Option<(DMat3, bool)>,
 }
 
 impl Turns {
@@ -48,8 +52,23 @@ impl Turns {
                 if row == 0 || row == rows { [0.0, -cosine.signum()] } else { [sine, -cosine] }
             };
             self.half = (0..=rows).map(half).collect();
+            self.sphere = None;
         }
         self
+    }
+
+    /// The normals of a surface in a frame, one per vertex.
+    fn normals(&mut self, surface: &Surface, frame: &Frame) -> &[Vec3] {
+        let sphere = surface.is_sphere.then_some((frame.normals, surface.inside));
+        if sphere.is_none() || sphere != self.sphere {
+            self.normals.clear();
+            for circle in surface.circles() {
+                let outward = surface.outward[..surface.corners(circle)].iter();
+                self.normals.extend(outward.map(|&outward| frame.direction(surface.normal(circle, outward))));
+            }
+            self.sphere = sphere;
+        }
+        &self.normals
     }
 
     /// Around the axis: cosine and sine of each segment.
@@ -73,6 +92,7 @@ struct Surface<'p> {
     profile: &'p [Circle],
     /// True if the inside is seen.
     inside: bool,
+    is_sphere: bool,
 }
 
 /// Vertices of a circle: one for each segment, or one for all.
@@ -108,9 +128,10 @@ impl MeshBuilder {
     ) -> Result<(), Fault> {
         let up = unit(axis);
         let (side, front) = up.any_orthonormal_pair();
-        let around = self.turns.of(segments).around().iter();
-        let outward = around.map(|&[cosine, sine]| side * cosine + front * sine).collect();
-        let surface = Surface { origin, up, outward, profile, inside };
+        let Turns { around, half, .. } = self.turns.of(segments);
+        let outward = around.iter().map(|&[cosine, sine]| side * cosine + front * sine).collect();
+        let is_sphere = profile.len() == half.len() && profile.iter().zip(half).all(|(a, b)| a.normal == *b);
+        let surface = Surface { origin, up, outward, profile, inside, is_sphere: is_sphere && axis == DVec3::Y };
         let (vertices, triangles) = surface.size();
         if self.has_room(vertices, triangles) && surface.is_apart(self.frame()) {
             self.add_apart(&surface, vertices, triangles)
@@ -124,7 +145,7 @@ impl MeshBuilder {
         let bytes = vertices * size_of::<Vertex>() + triangles * size_of::<Triangle>() + 2 * size_of::<Material>();
         self.vertices.len() + vertices <= MAX_ELEMENTS
             && self.triangles.len() + triangles <= MAX_ELEMENTS
-            && self.limits.have_room(2 * bytes + self.shared.bytes_with(vertices))
+            && self.limits.have_room(2 * bytes + vertices * size_of::<Vec3>() + self.shared.bytes_with(vertices))
     }
 
     /// Adds a surface whose size and vertices [`MeshBuilder::has_room`] and [`Surface::is_apart`] have found sound.
@@ -162,19 +183,16 @@ impl MeshBuilder {
     /// Adds the vertices of a surface's circles, which are where they are found.
     fn add_circles(&mut self, surface: &Surface) -> Result<Vec<Row>, Fault> {
         let frame = *self.frame();
+        let mut normals = self.turns.normals(surface, &frame).iter();
         let mut rows: Vec<Row> = Vec::with_capacity(surface.profile.len());
-        for circle in surface.profile {
-            if rows.len() + 1 == surface.profile.len() && surface.is_closed() {
-                rows.push(rows[0]);
-                continue;
+        for circle in surface.circles() {
+            rows.push(Row { first: self.vertices.len() as u32, step: u32::from(!circle.is_point()) });
+            for (&outward, &normal) in surface.outward[..surface.corners(circle)].iter().zip(normals.by_ref()) {
+                self.vertices.push(frame.place(surface.position(circle, outward), normal)?);
             }
-            let first = self.vertices.len() as u32;
-            let (corners, step) = if circle.is_point() { (1, 0) } else { (surface.outward.len(), 1) };
-            for &outward in &surface.outward[..corners] {
-                let (position, normal) = surface.corner(circle, outward);
-                self.vertices.push(frame.place(position, frame.direction(normal))?);
-            }
-            rows.push(Row { first, step });
+        }
+        if surface.is_closed() {
+            rows.push(rows[0]);
         }
         Ok(rows)
     }
@@ -185,8 +203,7 @@ impl MeshBuilder {
         for (row, circle) in surface.profile.iter().enumerate() {
             let mut above = Vec::with_capacity(surface.outward.len());
             for &outward in &surface.outward {
-                let (position, normal) = surface.corner(circle, outward);
-                above.push(self.vertex(position, normal)?);
+                above.push(self.vertex(surface.position(circle, outward), surface.normal(circle, outward))?);
             }
             for segment in 0..below.len() {
                 let next = (segment + 1) % below.len();
@@ -217,12 +234,15 @@ const NORMALS: f64 = 1e-4;
 const TINY: f64 = 1e-30;
 
 impl Surface<'_> {
-    /// Position and normal of a corner.
     #[inline(always)]
-    fn corner(&self, circle: &Circle, outward: DVec3) -> (DVec3, DVec3) {
+    fn position(&self, circle: &Circle, outward: DVec3) -> DVec3 {
+        self.origin + outward * circle.radius + self.up * circle.height
+    }
+
+    #[inline(always)]
+    fn normal(&self, circle: &Circle, outward: DVec3) -> DVec3 {
         let sign = if self.inside { -1.0 } else { 1.0 };
-        let normal = (outward * circle.normal[0] + self.up * circle.normal[1]) * sign;
-        (self.origin + outward * circle.radius + self.up * circle.height, normal)
+        (outward * circle.normal[0] + self.up * circle.normal[1]) * sign
     }
 
     /// True if the last circle is the first.
@@ -230,12 +250,20 @@ impl Surface<'_> {
         self.profile.len() > 1 && self.profile.first() == self.profile.last()
     }
 
+    /// The circles, each once.
+    fn circles(&self) -> &[Circle] {
+        &self.profile[..self.profile.len() - usize::from(self.is_closed())]
+    }
+
+    /// Vertices of a circle.
+    fn corners(&self, circle: &Circle) -> usize {
+        if circle.is_point() { 1 } else { self.outward.len() }
+    }
+
     /// Vertices and triangles.
     fn size(&self) -> (usize, usize) {
-        let segments = self.outward.len();
-        let circles = &self.profile[..self.profile.len() - usize::from(self.is_closed())];
-        let vertices = circles.iter().map(|circle| if circle.is_point() { 1 } else { segments }).sum();
-        let around = |circle: &Circle| if circle.radius != 0.0 { segments } else { 0 };
+        let vertices = self.circles().iter().map(|circle| self.corners(circle)).sum();
+        let around = |circle: &Circle| if circle.radius != 0.0 { self.outward.len() } else { 0 };
         (vertices, self.profile.windows(2).map(|pair| around(&pair[0]) + around(&pair[1])).sum())
     }
 
@@ -259,7 +287,7 @@ impl Surface<'_> {
                     > NORMALS * largest * circle.normal[0].hypot(circle.normal[1])
         };
         let between = |pair: &[Circle]| {
-            let [from, to] = [pair[0], pair[1]].map(|circle| glam::DVec2::new(circle.radius, circle.height));
+            let [from, to] = [pair[0], pair[1]].map(|circle| DVec2::new(circle.radius, circle.height));
             from.distance(to) * smallest > least
         };
         (self.up.length_squared() - 1.0).abs() < 1e-6
