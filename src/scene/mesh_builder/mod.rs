@@ -37,7 +37,8 @@ pub struct MeshBuilder {
     lights: Vec<Light>,
     /// The shape's vertices.
     shared: Shared,
-    /// Those of the shape's vertices that are not among them yet: a curved surface needs no search for its own.
+    /// Those of the shape's vertices that are not among them yet, for nobody has searched: a curved surface makes its own,
+    /// and so does a plane's first polygon.
     unlisted: Range<usize>,
     /// What curved surfaces of as many segments have in common.
     turns: Turns,
@@ -263,6 +264,19 @@ impl MeshBuilder {
         std::mem::take(unlisted).for_each(|index| shared.list(index as u32, vertices));
         let held = shared.bytes();
         shared.find_or(&vertex, vertices, |vertices| store(vertices, vertex, limits, held))
+    }
+
+    /// The same in a shape of few vertices, of which none is listed.
+    fn unlisted_vertex(&mut self, position: DVec3, normal: Vec3) -> Result<u32, Fault> {
+        let vertex = self.frame().place(position, normal)?;
+        let same = |&index: &usize| shared::bits(&self.vertices[index]) == shared::bits(&vertex);
+        if let Some(index) = self.unlisted.clone().find(same) {
+            return Ok(index as u32);
+        }
+        let index = store(&mut self.vertices, vertex, &mut self.limits, self.shared.bytes())?;
+        let begin = if self.unlisted.is_empty() { index as usize } else { self.unlisted.start };
+        self.unlisted = begin..index as usize + 1;
+        Ok(index)
     }
 
     /// The same for a mesh that has indices of its own: corners with the same two indices share a vertex, others do not.

@@ -1,8 +1,8 @@
 //! Surfaces of revolution: a profile that is turned around an axis.
 //!
-//! Nearly all of them have vertices that surely differ, but for poles and the seam of a torus: those are made without a
-//! search. The others (flattened, far from the origin, next to the limits) are searched corner by corner, and give the
-//! same as a search would have given for the first.
+//! Nearly all of them have vertices that surely differ, but for poles and the seam of a torus, which are the same by
+//! construction. Those are made without a search for equal vertices, and are to the bit what it would give. The others
+//! (flattened, far from the origin, next to the limits) are searched corner by corner.
 
 use super::{Frame, MeshBuilder, unit};
 use crate::math::Vertex;

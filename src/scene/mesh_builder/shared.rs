@@ -125,6 +125,7 @@ impl Shared {
     }
 }
 
-fn bits(vertex: &Vertex) -> [u64; 4] {
+/// What vertices are compared by.
+pub fn bits(vertex: &Vertex) -> [u64; 4] {
     bytemuck::cast(*vertex)
 }

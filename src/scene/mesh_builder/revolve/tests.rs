@@ -68,3 +68,25 @@ fn polygons_of_the_same_shape_still_share_its_vertices() {
     });
     assert_eq!(scene.vertices.len(), 4 + 1 + 2 + 3, "{:?}", scene.vertices);
 }
+
+#[test]
+fn spheres_after_others_have_the_normals_that_they_have_alone() {
+    let flat = DAffine3::from_scale(DVec3::new(1.0, 0.5, -2.0));
+    let spheres = [(DAffine3::IDENTITY, 1.0, 8), (DAffine3::IDENTITY, 2.0, 8), (DAffine3::IDENTITY, -2.0, 8)];
+    let others = [(flat, -2.0, 8), (flat, 1.0, 8), (flat, 1.0, 9), (DAffine3::IDENTITY, 1.0, 8)];
+    let mut together = MeshBuilder::default();
+    let mut normals: Vec<Vec3> = Vec::new();
+    for (frame, radius, segments) in spheres.into_iter().chain(others) {
+        let add = |builder: &mut MeshBuilder| {
+            builder.set_transform(frame);
+            builder.sphere(DVec3::ONE, radius, segments).unwrap();
+        };
+        add(&mut together);
+        let mut alone = MeshBuilder::default();
+        add(&mut alone);
+        normals.extend(alone.finish().vertices.iter().map(|v| v.normal));
+    }
+    // Another surface's take their place
+    assert!(together.torus(DVec3::ZERO, DVec3::X, 2.0, 1.0, 8).is_ok() && together.turns.sphere.is_none());
+    assert!(together.finish().vertices.iter().map(|v| v.normal).take(normals.len()).eq(normals.iter().copied()));
+}
