@@ -47,7 +47,7 @@ impl Limits {
     /// Holds that many bytes, which are stored for a while, against what is left.
     #[inline]
     pub fn passing(&self, bytes: usize) -> Result<(), Fault> {
-        if self.used.saturating_add(bytes) > self.allowed { Err(self.exceeded()) } else { Ok(()) }
+        if self.have_room(bytes) { Ok(()) } else { Err(self.exceeded()) }
     }
 
     #[cold]
@@ -57,6 +57,11 @@ impl Limits {
             self.allowed >> 20
         );
         Fault::new(None, problem, "are there copies of copies? Otherwise take fewer segments, as in FILE:segments=8")
+    }
+
+    /// True if there is room for so many bytes more.
+    pub fn have_room(&self, bytes: usize) -> bool {
+        self.used.saturating_add(bytes) <= self.allowed
     }
 
     /// One more vertex, or one more triangle, beside this many.

@@ -8,6 +8,7 @@
 mod curves;
 mod limits;
 mod polygons;
+mod revolve;
 mod shared;
 mod warnings;
 
@@ -19,8 +20,10 @@ use foldhash::fast::RandomState;
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 pub use limits::Limits;
 use polygons::has_direction;
+use revolve::Turns;
 use shared::Shared;
 use std::collections::HashMap;
+use std::ops::Range;
 pub use warnings::Warnings;
 
 /// Most transforms inside each other.
@@ -34,6 +37,11 @@ pub struct MeshBuilder {
     lights: Vec<Light>,
     /// The shape's vertices.
     shared: Shared,
+    /// Those of the shape's vertices that are not among them yet, for nobody has searched: a curved surface makes its own,
+    /// and so does a plane's first polygon.
+    unlisted: Range<usize>,
+    /// What curved surfaces of as many segments have in common.
+    turns: Turns,
     /// Normal of the flat polygon that began the shape.
     flat: Vec3,
     /// Materials by their bits.
@@ -70,6 +78,26 @@ impl Frame {
         );
         Frame { affine, normals: cofactors, mirrored: sign < 0.0 }
     }
+
+    /// A vertex where the transform puts it; the normal is one that [`Frame::direction`] has turned.
+    #[inline(always)]
+    fn place(&self, position: DVec3, normal: Vec3) -> Result<Vertex, Fault> {
+        // Adding zero makes -0 and 0 the same vertex
+        let position = self.affine.transform_point3(position).as_vec3() + Vec3::ZERO;
+        if position.is_finite() { Ok(Vertex::new(position, normal)) } else { Err(not_finite(position)) }
+    }
+
+    /// A normal of any length as the transform turns it, of length one or zero.
+    #[inline(always)]
+    fn direction(&self, normal: DVec3) -> Vec3 {
+        let turned = unit_if_easy(self.normals * normal).unwrap_or_else(|| unit(self.normals * unit(normal)));
+        turned.as_vec3() + Vec3::ZERO
+    }
+}
+
+#[cold]
+fn not_finite(position: Vec3) -> Fault {
+    Fault::new(None, format!("a corner at {position} is not finite in single precision"), FINITE)
 }
 
 impl Default for MeshBuilder {
@@ -80,6 +108,8 @@ impl Default for MeshBuilder {
             materials: Vec::new(),
             lights: Vec::new(),
             shared: Shared::default(),
+            unlisted: 0..0,
+            turns: Turns::default(),
             flat: Vec3::ZERO,
             known: HashMap::default(),
             current: Material::neutral(),
@@ -215,6 +245,7 @@ impl MeshBuilder {
     /// Begins a shape: nothing that follows shares a vertex with what came before.
     pub fn new_shape(&mut self) {
         self.shared.clear();
+        self.unlisted = 0..0;
     }
 
     /// The index of a vertex, new or shared with an equal one of this shape. The normal may have any length; zero stays
@@ -228,10 +259,24 @@ impl MeshBuilder {
 
     /// The same with a normal that [`MeshBuilder::direction`] has brought into the scene.
     fn shared_vertex(&mut self, position: DVec3, normal: Vec3) -> Result<u32, Fault> {
-        let vertex = self.place(position, normal)?;
-        let MeshBuilder { shared, vertices, limits, .. } = self;
+        let vertex = self.frame().place(position, normal)?;
+        let MeshBuilder { shared, vertices, limits, unlisted, .. } = self;
+        std::mem::take(unlisted).for_each(|index| shared.list(index as u32, vertices));
         let held = shared.bytes();
         shared.find_or(&vertex, vertices, |vertices| store(vertices, vertex, limits, held))
+    }
+
+    /// The same in a shape of few vertices, of which none is listed.
+    fn unlisted_vertex(&mut self, position: DVec3, normal: Vec3) -> Result<u32, Fault> {
+        let vertex = self.frame().place(position, normal)?;
+        let same = |&index: &usize| shared::bits(&self.vertices[index]) == shared::bits(&vertex);
+        if let Some(index) = self.unlisted.clone().find(same) {
+            return Ok(index as u32);
+        }
+        let index = store(&mut self.vertices, vertex, &mut self.limits, self.shared.bytes())?;
+        let begin = if self.unlisted.is_empty() { index as usize } else { self.unlisted.start };
+        self.unlisted = begin..index as usize + 1;
+        Ok(index)
     }
 
     /// The same for a mesh that has indices of its own: corners with the same two indices share a vertex, others do not.
@@ -242,37 +287,15 @@ impl MeshBuilder {
         if let Some(index) = self.shared.find_indices(indices) {
             return Ok(index);
         }
-        let vertex = self.place(position, self.direction(normal))?;
+        let vertex = self.frame().place(position, self.direction(normal))?;
         let index = store(&mut self.vertices, vertex, &mut self.limits, self.shared.bytes())?;
         self.shared.insert_indices(indices, index);
         Ok(index)
     }
 
-    /// [`MeshBuilder::vertex`] of something that has indices: equal ones share a vertex whatever their indices are.
-    fn known_vertex(&mut self, indices: [u32; 2], position: DVec3, normal: DVec3) -> Result<u32, Fault> {
-        if let Some(index) = self.shared.find_indices(indices) {
-            return Ok(index);
-        }
-        let index = self.shared_vertex(position, self.direction(normal))?;
-        self.shared.insert_indices(indices, index);
-        Ok(index)
-    }
-
-    /// A vertex where the present transform puts it.
-    fn place(&self, position: DVec3, normal: Vec3) -> Result<Vertex, Fault> {
-        // Adding zero makes -0 and 0 the same vertex
-        let position = self.frame().affine.transform_point3(position).as_vec3() + Vec3::ZERO;
-        if !position.is_finite() {
-            return Err(Fault::new(None, format!("a corner at {position} is not finite in single precision"), FINITE));
-        }
-        Ok(Vertex::new(position, normal))
-    }
-
     /// A normal of any length as the present transform turns it, of length one or zero.
     fn direction(&self, normal: DVec3) -> Vec3 {
-        let normals = self.frame().normals;
-        let turned = unit_if_easy(normals * normal).unwrap_or_else(|| unit(normals * unit(normal)));
-        turned.as_vec3() + Vec3::ZERO
+        self.frame().direction(normal)
     }
 
     /// A triangle between vertices, counter-clockwise where it is seen from outside.
@@ -288,6 +311,7 @@ impl MeshBuilder {
         Ok(())
     }
 
+    /// The index of the current material, which a triangle is about to have.
     fn material_index(&mut self) -> Result<u32, Fault> {
         if let Some(index) = self.current_index {
             return Ok(index);

@@ -6,6 +6,9 @@ use crate::scene::text::Fault;
 use glam::DVec3;
 use std::cell::LazyCell;
 
+/// Corners of a polygon that are compared with each other.
+const FEW: usize = 4;
+
 impl MeshBuilder {
     /// A polygon with corners counter-clockwise where it is seen from outside: a fan if it is convex, otherwise cut into
     /// ears. `normals` has one per corner, or none at all for a flat polygon. One with fewer than three corners is left
@@ -57,17 +60,26 @@ impl MeshBuilder {
         let mut vertices = std::mem::take(&mut self.corners);
         vertices.clear();
         for (i, &corner) in corners.iter().enumerate() {
+            let indices = indices.get(i).copied().flatten();
+            if let Some(known) = indices.and_then(|indices| self.shared.find_indices(indices)) {
+                vertices.push(known);
+                continue;
+            }
             let given = normals.get(i).copied().unwrap_or(DVec3::ZERO);
             let has_length = has_direction(given);
             if !normals.is_empty() && !has_length {
                 self.warnings.add("normal of no length: the polygon's own taken");
             }
-            vertices.push(match indices.get(i).copied().flatten() {
+            vertices.push(match indices {
                 _ if !has_length => {
                     let normal = *own.get_or_insert_with(|| self.direction(*flat));
                     self.shared_vertex(corner, normal)?
                 }
-                Some(indices) => self.known_vertex(indices, corner, given)?,
+                Some(indices) => {
+                    let vertex = self.shared_vertex(corner, self.direction(given))?;
+                    self.shared.insert_indices(indices, vertex);
+                    vertex
+                }
                 None => self.shared_vertex(corner, self.direction(given))?,
             });
         }
@@ -85,14 +97,19 @@ impl MeshBuilder {
         }
         let flat = newell(corners);
         let normal = self.direction(flat);
-        if normal != self.flat {
+        let begins = normal != self.flat;
+        if begins {
             self.new_shape();
             self.flat = normal;
         }
         let mut vertices = std::mem::take(&mut self.corners);
         vertices.clear();
         for &corner in corners {
-            vertices.push(self.shared_vertex(corner, normal)?);
+            // Few are compared sooner than listed, and most planes have one triangle
+            vertices.push(match begins && corners.len() <= FEW {
+                true => self.unlisted_vertex(corner, normal)?,
+                false => self.shared_vertex(corner, normal)?,
+            });
         }
         self.fill(corners, &[], vertices, || flat)
     }

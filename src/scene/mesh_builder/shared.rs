@@ -63,9 +63,7 @@ impl Shared {
         add: impl FnOnce(&mut Vec<Vertex>) -> Result<u32, E>,
     ) -> Result<u32, E> {
         let bits = bits(vertex);
-        let mut hasher = self.hasher.build_hasher();
-        bits.iter().for_each(|&word| hasher.write_u64(word));
-        let place = Place { hash: hasher.finish() as u32, index: 0 };
+        let place = self.place(bits);
         let same = |other: &Place| other.hash == place.hash && self::bits(&vertices[other.index as usize]) == bits;
         match self.by_place.entry(place.spread(), same, |other| other.spread()) {
             Entry::Occupied(found) => Ok(found.get().index),
@@ -75,6 +73,20 @@ impl Shared {
                 Ok(index)
             }
         }
+    }
+
+    /// The place of a vertex that has no index yet.
+    #[inline]
+    fn place(&self, bits: [u64; 4]) -> Place {
+        let mut hasher = self.hasher.build_hasher();
+        bits.iter().for_each(|&word| hasher.write_u64(word));
+        Place { hash: hasher.finish() as u32, index: 0 }
+    }
+
+    /// Lists a vertex that is there already, and differs from all that are listed.
+    pub fn list(&mut self, index: u32, vertices: &[Vertex]) {
+        let place = Place { index, ..self.place(bits(&vertices[index as usize])) };
+        self.by_place.insert_unique(place.spread(), place, |other| other.spread());
     }
 
     /// The vertex of these indices.
@@ -94,6 +106,11 @@ impl Shared {
         self.by_place.capacity() * PER_PLACE + self.by_indices.capacity() * PER_KEYED_PLACE
     }
 
+    /// The same with so many vertices more, at the most: where the table grows, it grows to twice of what it holds.
+    pub fn bytes_with(&self, more: usize) -> usize {
+        self.bytes().saturating_add((self.by_place.len() + more).saturating_mul(2 * PER_PLACE))
+    }
+
     /// Forgets all. Clearing takes as long as a table is large: a large one must not stay behind for many small shapes.
     pub fn clear(&mut self) {
         if !self.by_place.is_empty() {
@@ -108,6 +125,7 @@ impl Shared {
     }
 }
 
-fn bits(vertex: &Vertex) -> [u64; 4] {
+/// What vertices are compared by.
+pub fn bits(vertex: &Vertex) -> [u64; 4] {
     bytemuck::cast(*vertex)
 }

@@ -31,14 +31,18 @@ impl Default for Names {
 
 impl Names {
     fn find(&self, name: &[u8]) -> Option<usize> {
-        let found =
-            self.numbers.find(self.hasher.hash_one(name), |&number| nth(&self.text, &self.ends, number) == name);
+        self.find_hashed(name, self.hasher.hash_one(name))
+    }
+
+    fn find_hashed(&self, name: &[u8], hash: u64) -> Option<usize> {
+        let found = self.numbers.find(hash, |&number| nth(&self.text, &self.ends, number) == name);
         found.map(|&number| number as usize)
     }
 
     /// The number of a name, and whether it is new.
     fn add(&mut self, name: &[u8]) -> Result<(usize, bool), Fault> {
-        if let Some(number) = self.find(name) {
+        let hash = self.hasher.hash_one(name);
+        if let Some(number) = self.find_hashed(name, hash) {
             return Ok((number, false));
         }
         let Names { text, ends, numbers, hasher } = self;
@@ -48,8 +52,7 @@ impl Names {
         text.extend_from_slice(name);
         let number = ends.len() as u32;
         ends.push(end);
-        let hash = |&number: &u32| hasher.hash_one(nth(text, ends, number));
-        numbers.insert_unique(hash(&number), number, hash);
+        numbers.insert_unique(hash, number, |&number: &u32| hasher.hash_one(nth(text, ends, number)));
         Ok((number as usize, true))
     }
 }

@@ -47,6 +47,14 @@ impl Reader {
                 words.skip_line();
                 continue;
             }
+            if entity == b"p"
+                && let Some(position) = words.plain_numbers_on_line()
+            {
+                // Half of what most files consist of
+                self.pass(1 + position.len()).map_err(|fault| fault.at(line))?;
+                self.vertices.change().position = DVec3::from(position);
+                continue;
+            }
             arguments(words, &mut following);
             self.pass(1 + following.len()).map_err(|fault| fault.at(line))?;
             match (entity, following.as_slice()) {

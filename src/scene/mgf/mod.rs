@@ -63,6 +63,9 @@ struct Reader {
     /// True if the mesh has the current material already.
     material_set: bool,
     emitters: Emitters,
+    /// Room for the vertices of a face, and for their positions: faces are many and small.
+    points: Vec<Point>,
+    corners: Vec<DVec3>,
     depth: usize,
     /// Words gone through.
     passed: usize,
@@ -83,6 +86,8 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
         materials: Contexts::default(),
         material_set: false,
         emitters: Emitters::default(),
+        points: Vec::new(),
+        corners: Vec::new(),
         depth: 0,
         passed: 0,
     };

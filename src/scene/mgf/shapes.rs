@@ -21,8 +21,13 @@ impl Reader {
         let before = self.mesh.triangles();
         match (entity, arguments) {
             (b"f", names) => {
-                let points = self.points(names)?;
+                let mut points = std::mem::take(&mut self.points);
+                points.clear();
+                for &name in names {
+                    points.push(*self.vertices.find(name)?);
+                }
                 self.face(&points, &[])?;
+                self.points = points;
             }
             (b"fh", names) => {
                 let mut points = Vec::with_capacity(names.len());
@@ -82,9 +87,13 @@ impl Reader {
 
     /// A face; where a vertex has no normal it is the face's own.
     fn face(&mut self, points: &[Point], holes: &[u32]) -> Result<(), Fault> {
-        let corners: Vec<DVec3> = points.iter().map(|point| point.position).collect();
+        let mut corners = std::mem::take(&mut self.corners);
+        corners.clear();
+        corners.extend(points.iter().map(|point| point.position));
         if points.iter().all(|point| point.normal == Vec3::ZERO) {
-            return self.mesh.polygon_with_holes(&corners, &[], holes);
+            self.mesh.polygon_with_holes(&corners, &[], holes)?;
+            self.corners = corners;
+            return Ok(());
         }
         let outer = holes.first().map_or(corners.len(), |&first| first as usize);
         let own = LazyCell::new(|| newell(&corners[..outer]));

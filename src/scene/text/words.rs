@@ -295,6 +295,22 @@ impl<'a> Words<'a> {
         Some(value)
     }
 
+    /// The numbers in the rest of the line of the word that was read last, if they are so many and of the kind that most
+    /// are. Otherwise all of the line stays.
+    #[inline]
+    pub fn plain_numbers_on_line<const N: usize>(&mut self) -> Option<[f64; N]> {
+        let (at, here, line, joined) = (self.at, self.here, self.line, self.joined);
+        let mut values = [0.0; N];
+        let read = values.iter_mut().all(|value| {
+            self.plain_number().map(|number| *value = number).is_some() && self.here - self.joined == here - joined
+        });
+        if read && self.peek_on_line().is_none() {
+            return Some(values);
+        }
+        (self.at, self.here, self.line, self.joined) = (at, here, line, joined);
+        None
+    }
+
     /// Numbers with an exponent or many digits, right before punctuation, not finite, or none at all.
     fn other_number(&mut self, what: &str) -> Result<f64, Fault> {
         let word = self.need(what)?;

@@ -92,3 +92,29 @@ fn counts_are_held_against_the_file_and_indices_against_counts() {
     }
     assert!(words.index(3, "i").unwrap_err().problem.contains("`1.0` is not a whole number"));
 }
+
+#[test]
+fn numbers_of_a_line_are_all_of_it_or_none() {
+    static LINES: Syntax = Syntax::new(b"", b"").with_continued_lines();
+    for (text, numbers) in [
+        ("p 1 -2.5 3\nq", true),
+        ("p 1 \\\n -2.5 3", true),
+        ("p\t1 -2.5 3 \r\n\r\n4", true),
+        ("p 1 -2.5\n3", false),
+        ("p\n1 -2.5 3", false),
+        ("p 1 -2.5 3 4\n", false),
+        ("p 1 -2.5 3 x\n", false),
+        ("p 1 -2.5 x\n", false),
+        ("p 1 -2.5 3e0\n", false),
+        ("p 1 -2.5", false),
+        ("p", false),
+    ] {
+        let mut words = Words::new(text.as_bytes(), &LINES);
+        words.next();
+        let (before, line) = (words.left(), words.line());
+        let found = words.plain_numbers_on_line();
+        assert_eq!(found, numbers.then_some([1.0, -2.5, 3.0]), "{text:?}");
+        assert!(numbers || (words.left(), words.line()) == (before, line), "{text:?}: nothing is passed over");
+        assert!(!numbers || words.next_on_line().is_none(), "{text:?}: all of it is");
+    }
+}
