@@ -17,6 +17,8 @@ pub struct Table {
     pub notes: Vec<String>,
     /// True if each number stands beside the published one.
     pub beside: bool,
+    /// True if its numbers are the thesis's own: a program that reads them must not take them for a run's.
+    pub published: bool,
 }
 
 /// A column.
@@ -59,7 +61,7 @@ pub enum Cell {
     Text(String),
     /// A number, with the published one where the table stands beside the thesis; both may be missing.
     Number {
-        /// Measured, or, in a table of published numbers alone, published.
+        /// Measured, or published where [`Table::published`] says so.
         value: Option<f64>,
         /// Published.
         thesis: Option<f64>,

@@ -69,6 +69,7 @@ impl Context<'_> {
             rows: rows.into_iter().map(|(_, row)| row).collect(),
             notes,
             beside: self.options.beside,
+            published: self.data.published,
         }
     }
 
@@ -123,6 +124,7 @@ impl Context<'_> {
             rows: Vec::new(),
             notes: vec![format!("The thesis has no numbers of the {label} in this table: they are in {where_it_is}.")],
             beside: false,
+            published: true,
         }
     }
 

@@ -73,6 +73,7 @@ fn register_limit(data: &Data, id: &str, device: usize, published: &str) -> Tabl
         rows,
         notes: vec!["Faster: 1 - time with the limit / time without, as printed.".into()],
         beside: false,
+        published: data.published,
     }
 }
 
@@ -186,5 +187,6 @@ fn stand_in(context: &Context, id: &str, device: usize) -> Table {
         rows,
         notes,
         beside: false,
+        published: false,
     }
 }
