@@ -34,7 +34,7 @@ pub struct Data {
     pub frames: Vec<Frame>,
     /// Counts per ray.
     pub counts: Vec<Counts>,
-    /// Built structures, each once.
+    /// Built structures, each once by every processor and number of threads.
     pub built: Vec<Built>,
     /// Measurements without a usable result.
     pub failures: Vec<Failure>,
@@ -150,6 +150,8 @@ pub struct Built {
     pub build_ms: Option<f64>,
     /// Threads that built it.
     pub threads: Option<usize>,
+    /// How often it was built: the time is the median.
+    pub builds: usize,
     /// Processor that built it.
     pub processor: String,
     /// MiB by the thesis's accounting, geometry included.
@@ -270,17 +272,6 @@ impl Data {
                 && frame.width == frame.height
                 && c.is(&frame.scene, &frame.structure, &frame.variant, ray)
         })
-    }
-
-    /// A built structure; a camera path makes no difference to it.
-    pub fn built_of(&self, scene: &SceneKey, structure: &str, variant: &Variant) -> Option<&Built> {
-        let scene = scene.built();
-        self.built.iter().find(|b| b.structure == structure && b.scene == *scene && b.variant == *variant)
-    }
-
-    /// A built structure, with the thesis's options.
-    pub fn thesis_built(&self, scene: &SceneKey, structure: &str) -> Option<&Built> {
-        self.built_of(scene, structure, &Variant::of_thesis(scene.built().thesis(), structure))
     }
 
     /// Sides of the square images that were measured on a device, from the smallest.

@@ -1,6 +1,7 @@
 //! The thesis of 2009, measured anew: its published numbers, and tables, figures, claims and a report as pure functions
 //! of recorded runs. Nothing here measures, reads a clock or looks at the machine: the same runs give the same bytes.
 
+pub mod builds;
 pub mod claims;
 pub mod convention;
 pub mod data;

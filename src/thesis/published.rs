@@ -227,6 +227,7 @@ fn built() -> Vec<Built> {
                 },
                 build_ms: time,
                 threads: Some(1),
+                builds: 1,
                 processor: "Athlon64 X2, 2 GHz".into(),
                 thesis_mib: Some(row.size_mib),
                 allocated_mib: None,
