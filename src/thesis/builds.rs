@@ -1,6 +1,7 @@
 //! Who built a structure: build times of unlike processors or numbers of threads are neither compared nor put into one column.
 
 use super::data::{Built, Data, STRUCTURES};
+use super::number::Number;
 use super::scenes::SceneKey;
 use super::variant::Variant;
 
@@ -30,6 +31,11 @@ impl Built {
     /// Who built it.
     pub fn by(&self) -> BuiltBy<'_> {
         BuiltBy { processor: &self.processor, threads: self.threads.unwrap_or(1) }
+    }
+
+    /// Build time, as it is written.
+    pub fn time(&self) -> Option<Number> {
+        self.build_ms.map(|value| Number { value, places: self.places })
     }
 }
 

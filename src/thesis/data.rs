@@ -2,6 +2,7 @@
 //! and those of recorded runs have the same form, so that everything is computed of both in the same way.
 
 use super::convention::Steps;
+use super::number::Number;
 use super::scenes::{SceneKey, ThesisScene};
 use super::variant::Variant;
 use super::workload::Workload;
@@ -104,6 +105,8 @@ pub struct Frame {
     pub max_ms: f64,
     /// Mean over frames.
     pub mean_ms: f64,
+    /// Decimals of the three, where they were printed.
+    pub places: Option<[usize; 3]>,
     /// Spread over passes in percent; `None` after a single pass.
     pub noise_pct: Option<f64>,
     /// True if an earlier measurement of the same was replaced by this one.
@@ -148,6 +151,8 @@ pub struct Built {
     pub properties: Properties,
     /// Build time in milliseconds.
     pub build_ms: Option<f64>,
+    /// Its decimals, where it was printed.
+    pub places: Option<usize>,
     /// Threads that built it.
     pub threads: Option<usize>,
     /// How often it was built: the time is the median.
@@ -207,6 +212,14 @@ pub struct RegisterLimit {
 /// The configuration whose column shows a ray type: the one that adds it (SPEC section 6).
 pub fn adding(ray: usize) -> Config {
     Config::ALL[ray.min(2)]
+}
+
+impl Frame {
+    /// Fastest, slowest and mean frame, as they are written.
+    pub fn times(&self) -> [Number; 3] {
+        let of = |index: usize, value| Number { value, places: self.places.map(|places| places[index]) };
+        [of(0, self.min_ms), of(1, self.max_ms), of(2, self.mean_ms)]
+    }
 }
 
 impl Counts {

@@ -142,6 +142,7 @@ fn built_of(record: &StructureRecord, provenance: &Provenance) -> (Built, Worklo
         variant: Variant::parse(&record.variant),
         properties: record.properties.clone(),
         build_ms: Some(record.build_ms),
+        places: None,
         threads: Some(record.build_threads),
         builds: provenance.plan.builds.max(1),
         processor: provenance.environment.cpu.clone(),
@@ -203,6 +204,7 @@ fn frame_of(device: usize, scene: &SceneKey, info: &DeviceInfo, record: &Configu
         min_ms,
         max_ms,
         mean_ms,
+        places: None,
         noise_pct: row.noise_pct,
         repeated: false,
     })

@@ -8,6 +8,7 @@ pub mod data;
 pub mod figures;
 pub mod format;
 pub mod measured;
+pub mod number;
 pub mod published;
 pub mod report;
 pub mod runs;

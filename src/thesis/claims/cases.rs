@@ -5,6 +5,7 @@ use super::compare::{Outcome, Uncertain, all, less};
 use crate::backend::Config;
 use crate::thesis::builds::BuiltBy;
 use crate::thesis::data::{Built, Data, Frame, STRUCTURES};
+use crate::thesis::number::Number;
 use crate::thesis::scenes::SceneKey;
 use crate::thesis::table::Form;
 use crate::thesis::variant::Variant;
@@ -48,8 +49,8 @@ pub fn is_shiny(data: &Data, scene: &SceneKey) -> bool {
 }
 
 /// A time in a case's numbers.
-pub fn ms(value: f64) -> String {
-    format!("{} ms", Form::Time.write(value))
+pub fn ms(value: impl Into<Number>) -> String {
+    format!("{} ms", value.into().write(Form::Time))
 }
 
 /// Scenes of which there can be structures: a camera path makes no other scene of it.
@@ -66,9 +67,9 @@ fn builders<'a>(data: &'a Data, scene: &SceneKey) -> Vec<BuiltBy<'a>> {
 pub fn build_times(data: &Data) -> Vec<Case> {
     let case = |scene: &SceneKey| {
         let by = *builders(data, scene).first()?;
-        let [grid, kdtree, bvh] = data.thesis_trio(Some(by), scene)?.map(|b| b.build_ms);
+        let [grid, kdtree, bvh] = data.thesis_trio(Some(by), scene)?.map(Built::time);
         let (grid, kdtree, bvh) = (grid?, kdtree?, bvh?);
-        let time = Uncertain::build;
+        let time = |time: Number| Uncertain::build(time.value);
         let outcome = all([less(time(grid), time(bvh)), less(time(bvh), time(kdtree))]);
         let on = if by.threads == 1 { String::new() } else { format!(" ({} threads)", by.threads) };
         Some(Case::new(scene, "", outcome, format!("grid {}, BVH {}, kd-tree {}{on}", ms(grid), ms(bvh), ms(kdtree))))
@@ -155,7 +156,7 @@ fn by_trio(
         for config in configs {
             let Some(trio) = trios(data, device, scene, *config).pop() else { continue };
             let outcome = judge(trio.map(|f| Uncertain::frame(data, f)));
-            let [grid, kdtree, bvh] = trio.map(|f| ms(f.mean_ms));
+            let [grid, kdtree, bvh] = trio.map(|f| ms(f.times()[2]));
             let numbers = format!("grid {grid}, kd-tree {kdtree}, BVH {bvh} at {side}x{side}", side = trio[0].width);
             cases.push(Case::new(scene, format!("{config:?}"), outcome, numbers));
         }

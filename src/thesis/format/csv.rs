@@ -20,7 +20,7 @@ pub fn write(tables: &[Table]) -> String {
             for (cell, column) in row.cells.iter().zip(&table.columns) {
                 let (own, beside) = match cell {
                     Cell::Text(text) => (text.clone(), String::new()),
-                    Cell::Number { value, thesis } => (number(*value), number(*thesis)),
+                    Cell::Number { value, thesis } => (number(value.map(|n| n.value)), number(thesis.map(|n| n.value))),
                 };
                 let (value, thesis) = if table.published { (String::new(), own) } else { (own, beside) };
                 let name = [column.group.as_str(), column.name.as_str()].join(" ");

@@ -70,7 +70,7 @@ fn build_times_by(context: &Context, by: Option<BuiltBy>) -> Table {
     let time = |data: &Data, key: &SceneKey, structure: &str| {
         // The thesis had another processor
         let by = by.filter(|_| !data.published);
-        data.thesis_built_by(by, key, structure)?.build_ms
+        data.thesis_built_by(by, key, structure)?.time()
     };
     let row = |key: &SceneKey| Row {
         keys: vec![key.to_string()],

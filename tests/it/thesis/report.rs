@@ -115,7 +115,9 @@ fn what_was_not_measured_is_on_the_page() {
         let from = html.find(&format!("<h3>Table {id}: ")).unwrap();
         html[from..from + html[from..].find("</table>").unwrap()].to_owned()
     };
-    assert!(table(&html, "5.3").contains("<td class=\"key\">buddha</td>") && table(&html, "5.3").contains("2406.00"));
+    assert!(
+        table(&html, "5.3").contains("<td class=\"key\">buddha</td>") && table(&html, "5.3").contains("<td>2406</td>")
+    );
     assert!(table(&html, "B.4").contains("45.19"), "the second card's times");
     assert!(html.contains("Nothing was measured for: 5.7, 5.3.4, B.4, B.5, B.6."));
     // The words change with the rows.
