@@ -2,6 +2,7 @@
 //! and those of recorded runs have the same form, so that everything is computed of both in the same way.
 
 use super::convention::Steps;
+use super::number::Number;
 use super::scenes::{SceneKey, ThesisScene};
 use super::variant::Variant;
 use super::workload::Workload;
@@ -34,7 +35,7 @@ pub struct Data {
     pub frames: Vec<Frame>,
     /// Counts per ray.
     pub counts: Vec<Counts>,
-    /// Built structures, each once.
+    /// Built structures, each once by every processor and number of threads.
     pub built: Vec<Built>,
     /// Measurements without a usable result.
     pub failures: Vec<Failure>,
@@ -104,6 +105,8 @@ pub struct Frame {
     pub max_ms: f64,
     /// Mean over frames.
     pub mean_ms: f64,
+    /// Decimals of the three, where they were printed.
+    pub places: Option<[usize; 3]>,
     /// Spread over passes in percent; `None` after a single pass.
     pub noise_pct: Option<f64>,
     /// True if an earlier measurement of the same was replaced by this one.
@@ -148,8 +151,12 @@ pub struct Built {
     pub properties: Properties,
     /// Build time in milliseconds.
     pub build_ms: Option<f64>,
+    /// Its decimals, where it was printed.
+    pub places: Option<usize>,
     /// Threads that built it.
     pub threads: Option<usize>,
+    /// How often it was built: the time is the median.
+    pub builds: usize,
     /// Processor that built it.
     pub processor: String,
     /// MiB by the thesis's accounting, geometry included.
@@ -205,6 +212,14 @@ pub struct RegisterLimit {
 /// The configuration whose column shows a ray type: the one that adds it (SPEC section 6).
 pub fn adding(ray: usize) -> Config {
     Config::ALL[ray.min(2)]
+}
+
+impl Frame {
+    /// Fastest, slowest and mean frame, as they are written.
+    pub fn times(&self) -> [Number; 3] {
+        let of = |index: usize, value| Number { value, places: self.places.map(|places| places[index]) };
+        [of(0, self.min_ms), of(1, self.max_ms), of(2, self.mean_ms)]
+    }
 }
 
 impl Counts {
@@ -270,17 +285,6 @@ impl Data {
                 && frame.width == frame.height
                 && c.is(&frame.scene, &frame.structure, &frame.variant, ray)
         })
-    }
-
-    /// A built structure; a camera path makes no difference to it.
-    pub fn built_of(&self, scene: &SceneKey, structure: &str, variant: &Variant) -> Option<&Built> {
-        let scene = scene.built();
-        self.built.iter().find(|b| b.structure == structure && b.scene == *scene && b.variant == *variant)
-    }
-
-    /// A built structure, with the thesis's options.
-    pub fn thesis_built(&self, scene: &SceneKey, structure: &str) -> Option<&Built> {
-        self.built_of(scene, structure, &Variant::of_thesis(scene.built().thesis(), structure))
     }
 
     /// Sides of the square images that were measured on a device, from the smallest.

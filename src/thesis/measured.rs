@@ -7,7 +7,9 @@ use super::scenes::SceneKey;
 use super::variant::Variant;
 use super::workload::{self, Candidate, Workload};
 use crate::backend::{DeviceInfo, DeviceType};
-use crate::results::record::{ConfigurationRecord, CounterSums, Environment, SceneRecord, Status, StructureRecord};
+use crate::results::record::{
+    ConfigurationRecord, CounterSums, Environment, Provenance, SceneRecord, Status, StructureRecord,
+};
 use crate::results::summary::Row;
 
 /// Everything that runs have measured. Of several measurements of the same, the last complete one counts; where frames
@@ -26,7 +28,7 @@ pub fn data(runs: &[RecordedRun]) -> Data {
         });
         for record in &run.journal.structures {
             add_scene(&mut data, SceneKey::of(&record.scene), &record.scene);
-            built.push(built_of(record, &provenance.environment.cpu));
+            built.push(built_of(record, provenance));
         }
         for record in &run.journal.configurations {
             let key = SceneKey::of_row(record);
@@ -132,7 +134,7 @@ fn add_scene(data: &mut Data, key: SceneKey, record: &SceneRecord) {
 }
 
 /// A structure, and of which content of its scene it was built.
-fn built_of(record: &StructureRecord, processor: &str) -> (Built, Workload) {
+fn built_of(record: &StructureRecord, provenance: &Provenance) -> (Built, Workload) {
     let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
     let built = Built {
         scene: SceneKey::of(&record.scene),
@@ -140,8 +142,10 @@ fn built_of(record: &StructureRecord, processor: &str) -> (Built, Workload) {
         variant: Variant::parse(&record.variant),
         properties: record.properties.clone(),
         build_ms: Some(record.build_ms),
+        places: None,
         threads: Some(record.build_threads),
-        processor: processor.to_owned(),
+        builds: provenance.plan.builds.max(1),
+        processor: provenance.environment.cpu.clone(),
         thesis_mib: Some(mib(record.memory.thesis_bytes)),
         allocated_mib: Some(mib(record.memory.structure_bytes + record.memory.geometry_bytes)),
         repeated: false,
@@ -149,7 +153,7 @@ fn built_of(record: &StructureRecord, processor: &str) -> (Built, Workload) {
     (built, Workload { scene: record.scene.hash.clone(), ..Workload::default() })
 }
 
-/// Each structure once, and all of a scene of the same triangles.
+/// Each structure once by every builder, the last one last, and all of a scene of the same triangles.
 fn add_built(data: &mut Data, rows: Vec<(Built, Workload)>) {
     let candidates = rows.iter().map(|(built, workload)| Candidate {
         group: built.scene.clone(),
@@ -167,15 +171,17 @@ fn add_built(data: &mut Data, rows: Vec<(Built, Workload)>) {
             }
             continue;
         }
-        let same =
-            |b: &&mut Built| b.scene == built.scene && b.structure == built.structure && b.variant == built.variant;
-        match data.built.iter_mut().find(same) {
-            Some(known) => {
-                built.repeated = true;
-                *known = built;
-            }
-            None => data.built.push(built),
+        let same = |b: &Built| {
+            b.scene == built.scene
+                && b.structure == built.structure
+                && b.variant == built.variant
+                && b.by() == built.by()
+        };
+        if let Some(known) = data.built.iter().position(same) {
+            data.built.remove(known);
+            built.repeated = true;
         }
+        data.built.push(built);
     }
 }
 
@@ -198,6 +204,7 @@ fn frame_of(device: usize, scene: &SceneKey, info: &DeviceInfo, record: &Configu
         min_ms,
         max_ms,
         mean_ms,
+        places: None,
         noise_pct: row.noise_pct,
         repeated: false,
     })

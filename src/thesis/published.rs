@@ -2,6 +2,7 @@
 
 use super::convention::Steps;
 use super::data::{Built, Counts, Data, Device, Frame, RegisterLimit, STRUCTURES, Scene, adding};
+use super::number::Number;
 use super::scenes::{SceneKey, ThesisScene};
 use super::variant::Variant;
 use super::workload::Workload;
@@ -43,9 +44,9 @@ struct DeviceRow {
 #[derive(Deserialize)]
 struct BuildRow {
     scene: String,
-    grid_ms: f64,
-    kdtree_ms: f64,
-    bvh_ms: f64,
+    grid_ms: Number,
+    kdtree_ms: Number,
+    bvh_ms: Number,
 }
 
 /// A row of any of the three property files: the columns are those of [`Properties`], and the size.
@@ -81,9 +82,9 @@ struct FrameRow {
     scene: String,
     resolution: u32,
     structure: String,
-    min_ms: f64,
-    max_ms: f64,
-    mean_ms: f64,
+    min_ms: Number,
+    max_ms: Number,
+    mean_ms: Number,
 }
 
 #[derive(Deserialize)]
@@ -121,9 +122,11 @@ pub fn data() -> Data {
         width: row.resolution,
         height: row.resolution,
         workload: Workload::default(),
-        min_ms: row.min_ms,
-        max_ms: row.max_ms,
-        mean_ms: row.mean_ms,
+        min_ms: row.min_ms.value,
+        max_ms: row.max_ms.value,
+        mean_ms: row.mean_ms.value,
+        // Every number of this file has its decimals
+        places: Some([row.min_ms, row.max_ms, row.mean_ms].map(|n| n.places.unwrap_or(0))),
         noise_pct: None,
         repeated: false,
     });
@@ -225,8 +228,10 @@ fn built() -> Vec<Built> {
                     nodes: row.nodes,
                     ..Properties::default()
                 },
-                build_ms: time,
+                build_ms: time.map(|n| n.value),
+                places: time.and_then(|n| n.places),
                 threads: Some(1),
+                builds: 1,
                 processor: "Athlon64 X2, 2 GHz".into(),
                 thesis_mib: Some(row.size_mib),
                 allocated_mib: None,

@@ -1,5 +1,7 @@
 //! A table as such: title, columns with units, rows, notes. How it looks is the business of [`super::format`].
 
+use super::number::Number;
+
 /// A table of the thesis, or one that belongs to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
@@ -17,6 +19,8 @@ pub struct Table {
     pub notes: Vec<String>,
     /// True if each number stands beside the published one.
     pub beside: bool,
+    /// True if its numbers are the thesis's own: a program that reads them must not take them for a run's.
+    pub published: bool,
 }
 
 /// A column.
@@ -59,10 +63,10 @@ pub enum Cell {
     Text(String),
     /// A number, with the published one where the table stands beside the thesis; both may be missing.
     Number {
-        /// Measured, or, in a table of published numbers alone, published.
-        value: Option<f64>,
+        /// Measured, or published where [`Table::published`] says so.
+        value: Option<Number>,
         /// Published.
-        thesis: Option<f64>,
+        thesis: Option<Number>,
     },
 }
 
@@ -139,7 +143,7 @@ pub fn ratio(value: f64) -> String {
 impl Cell {
     /// A number that stands alone.
     pub fn number(value: impl Into<Option<f64>>) -> Cell {
-        Cell::Number { value: value.into(), thesis: None }
+        Cell::Number { value: value.into().map(Number::from), thesis: None }
     }
 
     /// True if there is something in it from the table's own source.
@@ -155,7 +159,9 @@ impl Cell {
     /// Measured by published, where there are both and the quotient says something.
     pub fn ratio(&self) -> Option<f64> {
         match self {
-            Cell::Number { value: Some(value), thesis: Some(thesis) } if *thesis != 0.0 => Some(value / thesis),
+            Cell::Number { value: Some(value), thesis: Some(thesis) } if thesis.value != 0.0 => {
+                Some(value.value / thesis.value)
+            }
             _ => None,
         }
     }
@@ -165,8 +171,8 @@ impl Cell {
         match (self, line) {
             (Cell::Text(text), Line::Value) => Some(text.clone()),
             (Cell::Text(_), _) => None,
-            (Cell::Number { value, .. }, Line::Value) => value.map(|v| form.write(v)),
-            (Cell::Number { thesis, .. }, Line::Thesis) => thesis.map(|v| form.write(v)),
+            (Cell::Number { value, .. }, Line::Value) => value.map(|v| v.write(form)),
+            (Cell::Number { thesis, .. }, Line::Thesis) => thesis.map(|v| v.write(form)),
             (Cell::Number { .. }, Line::Ratio) => self.ratio().map(ratio),
         }
     }

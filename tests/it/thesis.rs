@@ -1,5 +1,6 @@
 //! The thesis: its published numbers, and what is made of recorded runs.
 
+mod apart; // published and measured numbers, build times of unlike builders
 mod claims; // every claim in every verdict, also where it is false
 mod command; // the program: broken and empty runs, files, splicing
 mod committed; // the runs in git, and what the README shows of them

@@ -3,7 +3,9 @@
 use super::Case;
 use super::compare::{Outcome, Uncertain, all, less};
 use crate::backend::Config;
+use crate::thesis::builds::BuiltBy;
 use crate::thesis::data::{Built, Data, Frame, STRUCTURES};
+use crate::thesis::number::Number;
 use crate::thesis::scenes::SceneKey;
 use crate::thesis::table::Form;
 use crate::thesis::variant::Variant;
@@ -47,58 +49,72 @@ pub fn is_shiny(data: &Data, scene: &SceneKey) -> bool {
 }
 
 /// A time in a case's numbers.
-pub fn ms(value: f64) -> String {
-    format!("{} ms", Form::Time.write(value))
+pub fn ms(value: impl Into<Number>) -> String {
+    format!("{} ms", value.into().write(Form::Time))
 }
 
-/// Grid, kd-tree and BVH of every scene that has all three. A camera path makes no other scene of it.
-fn built(data: &Data) -> Vec<(&SceneKey, [&Built; 3])> {
-    let of = |scene: &'_ SceneKey| {
-        let [grid, kdtree, bvh] = STRUCTURES.map(|s| data.thesis_built(scene, s));
-        Some([grid?, kdtree?, bvh?])
-    };
-    let scenes = data.scenes.iter().map(|s| &s.key).filter(|key| key.built() == *key);
-    scenes.filter_map(|key| Some((key, of(key)?))).collect()
+/// Scenes of which there can be structures: a camera path makes no other scene of it.
+fn scenes(data: &Data) -> impl Iterator<Item = &SceneKey> {
+    data.scenes.iter().map(|s| &s.key).filter(|key| key.built() == *key)
 }
 
-/// True if build times can be compared: the same number of threads of the same processor.
-fn alike(built: &[&Built; 3]) -> bool {
-    built.iter().all(|b| (b.threads, &b.processor) == (built[0].threads, &built[0].processor))
+/// Who built grid, kd-tree and BVH of a scene: only their times can be compared. The fewest threads first.
+fn builders<'a>(data: &'a Data, scene: &SceneKey) -> Vec<BuiltBy<'a>> {
+    data.builders().into_iter().filter(|by| data.thesis_trio(Some(*by), scene).is_some()).collect()
 }
 
-/// Claim 1.
+/// Claim 1: of several builders the one with the fewest threads, since the thesis had one.
 pub fn build_times(data: &Data) -> Vec<Case> {
-    let case = |(scene, built): (&SceneKey, [&Built; 3])| {
-        let [grid, kdtree, bvh] = built.map(|b| b.build_ms);
+    let case = |scene: &SceneKey| {
+        let by = *builders(data, scene).first()?;
+        let [grid, kdtree, bvh] = data.thesis_trio(Some(by), scene)?.map(Built::time);
         let (grid, kdtree, bvh) = (grid?, kdtree?, bvh?);
-        let time = Uncertain::build;
+        let time = |time: Number| Uncertain::build(time.value);
         let outcome = all([less(time(grid), time(bvh)), less(time(bvh), time(kdtree))]);
-        let on = match built[0].threads {
-            None | Some(1) => String::new(),
-            Some(threads) => format!(" ({threads} threads)"),
-        };
+        let on = if by.threads == 1 { String::new() } else { format!(" ({} threads)", by.threads) };
         Some(Case::new(scene, "", outcome, format!("grid {}, BVH {}, kd-tree {}{on}", ms(grid), ms(bvh), ms(kdtree))))
     };
-    built(data).into_iter().filter(|(_, built)| alike(built)).filter_map(case).collect()
+    scenes(data).filter_map(case).collect()
 }
 
-/// Builds that claim 1 does not compare.
+/// Builds that claim 1 does not compare, each reason with its scenes.
 pub fn unlike_builds(data: &Data) -> Vec<String> {
-    let mut reasons: Vec<(String, Vec<String>)> = Vec::new();
-    for (scene, built) in built(data).into_iter().filter(|(_, built)| !alike(built)) {
-        let [grid, kdtree, bvh] = built.map(|b| b.threads.unwrap_or(1));
-        let reason = if [kdtree, bvh] == [grid; 2] {
-            "the structures were built by unlike processors".to_owned()
-        } else {
-            let [grid, kdtree, bvh] = [grid, kdtree, bvh].map(threads);
-            format!("built on {grid} (grid), {bvh} (BVH) and {kdtree} (kd-tree); sweep with --threads 1")
-        };
+    let mut reasons: Vec<((&str, String), Vec<String>)> = Vec::new();
+    let mut add = |verb, reason: String, scene: &SceneKey| {
+        let reason = (verb, reason);
         match reasons.iter_mut().find(|(known, _)| *known == reason) {
             Some((_, scenes)) => scenes.push(scene.to_string()),
             None => reasons.push((reason, vec![scene.to_string()])),
         }
+    };
+    for scene in scenes(data) {
+        match &builders(data, scene)[..] {
+            [] => {
+                if let Some(trio) = data.thesis_trio(None, scene) {
+                    add("Not measured", unlike(&trio), scene);
+                }
+            }
+            [first, further @ ..] => {
+                for by in further {
+                    let (by, first) = (by.in_words(), first.in_words());
+                    add("Not judged", format!("builds on {by}, beside those on {first}"), scene);
+                }
+            }
+        }
     }
-    reasons.into_iter().map(|(reason, scenes)| format!("Not measured on {}: {reason}", scenes.join(", "))).collect()
+    let line =
+        |((verb, reason), scenes): ((&str, String), Vec<String>)| format!("{verb} on {}: {reason}", scenes.join(", "));
+    reasons.into_iter().map(line).collect()
+}
+
+/// Why three structures of a scene cannot be compared.
+fn unlike(trio: &[&Built; 3]) -> String {
+    let [grid, kdtree, bvh] = trio.map(|b| b.by().threads);
+    if [kdtree, bvh] == [grid; 2] {
+        return "the structures were built by unlike processors".into();
+    }
+    let [grid, kdtree, bvh] = [grid, kdtree, bvh].map(threads);
+    format!("built on {grid} (grid), {bvh} (BVH) and {kdtree} (kd-tree); sweep with --threads 1")
 }
 
 fn threads(number: usize) -> String {
@@ -107,8 +123,8 @@ fn threads(number: usize) -> String {
 
 /// Claim 2.
 pub fn memory(data: &Data) -> Vec<Case> {
-    let case = |(scene, built): (&SceneKey, [&Built; 3])| {
-        let [grid, kdtree, bvh] = built.map(|b| b.thesis_mib);
+    let case = |scene: &SceneKey| {
+        let [grid, kdtree, bvh] = data.thesis_trio(None, scene)?.map(|b| b.thesis_mib);
         let (grid, kdtree, bvh) = (grid?, kdtree?, bvh?);
         let outcome = all([
             less(Uncertain::exact(bvh), Uncertain::exact(kdtree)),
@@ -116,7 +132,7 @@ pub fn memory(data: &Data) -> Vec<Case> {
         ]);
         Some(Case::new(scene, "", outcome, format!("BVH {bvh:.2}, kd-tree {kdtree:.2}, grid {grid:.2} MiB")))
     };
-    built(data).into_iter().filter_map(case).collect()
+    scenes(data).filter_map(case).collect()
 }
 
 /// Grid, kd-tree and BVH with a scene and configuration, at each side that has all three, from the smallest.
@@ -140,7 +156,7 @@ fn by_trio(
         for config in configs {
             let Some(trio) = trios(data, device, scene, *config).pop() else { continue };
             let outcome = judge(trio.map(|f| Uncertain::frame(data, f)));
-            let [grid, kdtree, bvh] = trio.map(|f| ms(f.mean_ms));
+            let [grid, kdtree, bvh] = trio.map(|f| ms(f.times()[2]));
             let numbers = format!("grid {grid}, kd-tree {kdtree}, BVH {bvh} at {side}x{side}", side = trio[0].width);
             cases.push(Case::new(scene, format!("{config:?}"), outcome, numbers));
         }

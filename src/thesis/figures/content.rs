@@ -5,6 +5,7 @@ use super::draw::{Bar, Panel, Picture, Series};
 use super::theme;
 use crate::backend::Config;
 use crate::thesis::data::{Data, Frame, STRUCTURES, structure_title};
+use crate::thesis::published::{GT8600, GTX280};
 use crate::thesis::scenes::SceneKey;
 use crate::thesis::sweeps::{grid_sweep, resolution_sweep};
 use crate::thesis::tables::side::representative;
@@ -19,6 +20,8 @@ pub struct Kind {
     pub id: &'static str,
     /// Beginning of its files' names.
     pub file: &'static str,
+    /// The card that the thesis shows in it.
+    pub card: &'static str,
     /// What it needs.
     pub needs: &'static str,
     /// Its pictures of a device.
@@ -30,23 +33,32 @@ pub const KINDS: [Kind; 5] = [
     Kind {
         id: "5.1",
         file: "figure-5.1",
+        card: GTX280,
         needs: "the grid at several resolutions: grid:factor=... or grid:x=...",
         pictures: grid_resolution,
     },
     Kind {
         id: "5.2",
         file: "figure-5.2",
+        card: GT8600,
         needs: "grid, kdtree or bvh at two image resolutions or more",
         pictures: image_resolution,
     },
     Kind {
         id: "5.3",
         file: "figure-5.3",
+        card: GTX280,
         needs: "pattern=four at three image resolutions or more",
         pictures: four_rays,
     },
-    Kind { id: "5.4", file: "figure-5.4", needs: "tiles=N at two image resolutions or more", pictures: tiles },
-    Kind { id: "bars", file: "frame-times", needs: "frame times", pictures: bars },
+    Kind {
+        id: "5.4",
+        file: "figure-5.4",
+        card: GTX280,
+        needs: "tiles=N at two image resolutions or more",
+        pictures: tiles,
+    },
+    Kind { id: "bars", file: "frame-times", card: GTX280, needs: "frame times", pictures: bars },
 ];
 
 fn words(config: Config) -> &'static str {

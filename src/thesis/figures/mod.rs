@@ -41,11 +41,10 @@ pub fn all(data: &Data) -> Result<(Vec<Figure>, Vec<Missing>)> {
     let (mut figures, mut missing) = (Vec::new(), Vec::new());
     for kind in &content::KINDS {
         let before = figures.len();
-        for device in 0..data.devices.len() {
+        for device in in_order(data, kind.card) {
+            let end = end_of_names(data, kind.card, device);
             for (suffix, caption, picture) in (kind.pictures)(data, device) {
-                // The first device's figures have the plain names
-                let number = if device > 0 { format!("-device{}", device + 1) } else { String::new() };
-                let name = format!("{}{suffix}{number}", kind.file);
+                let name = format!("{}{suffix}{end}", kind.file);
                 let failed = |e| Error::output(Path::new(&name), std::io::Error::other(format!("{e}")));
                 let svg = draw::svg(&picture).map_err(failed)?;
                 figures.push(Figure { id: kind.id, name, caption, svg });
@@ -56,4 +55,23 @@ pub fn all(data: &Data) -> Result<(Vec<Figure>, Vec<Missing>)> {
         }
     }
     Ok((figures, missing))
+}
+
+/// Devices in the order of their figures: of the thesis's cards the one that it shows comes first.
+fn in_order(data: &Data, card: &str) -> Vec<usize> {
+    let mut devices: Vec<usize> = (0..data.devices.len()).collect();
+    devices.sort_by_key(|device| data.published && data.devices[*device].label != card);
+    devices
+}
+
+/// How the names of a device's figures end. Plain are those of the first measured device, and of what the thesis printed
+/// those of the card that it shows; its other card's say which it is.
+fn end_of_names(data: &Data, card: &str, device: usize) -> String {
+    let label = &data.devices[device].label;
+    match device {
+        _ if data.published && label == card => String::new(),
+        _ if data.published => format!("-{}", label.to_lowercase()),
+        0 => String::new(),
+        further => format!("-device{}", further + 1),
+    }
 }

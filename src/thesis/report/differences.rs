@@ -1,10 +1,13 @@
 //! What is not as it was in 2009 (SPEC section 12), and what that means for the numbers.
 
 use super::html::escape;
-use crate::thesis::data::Data;
+use crate::results::record::Status;
+use crate::thesis::builds::threads_in_words;
+use crate::thesis::data::{Data, structure_title};
+use crate::thesis::runs::RecordedRun;
 
 /// What, and why.
-const DIFFERENCES: [(&str, &str); 10] = [
+const DIFFERENCES: [(&str, &str); 8] = [
     (
         "The interface",
         "Kernels were CUDA, here they are WGSL through wgpu and Vulkan. There is no constant memory for nodes \
@@ -36,16 +39,6 @@ const DIFFERENCES: [(&str, &str); 10] = [
          thesis does not say how its images were checked.",
     ),
     (
-        "What a time is",
-        "A frame's time is its median over several passes along the path, by the device's timestamps where there are any. \
-         The thesis recorded single frames; its minimum and maximum therefore hold disturbances that ours do not.",
-    ),
-    (
-        "Builders",
-        "The kd-tree and the BVH are built on all cores unless --threads says otherwise, the grid on one; the thesis built \
-         everything on one core. The constants of its builders were not printed: ours are one set for all scenes.",
-    ),
-    (
         "Cameras",
         "The framing of single objects and the walks through theatre, office and conference were not printed. Counts of \
          these scenes depend on the path that was chosen here; those of BART's scenes follow the path in their files.",
@@ -57,10 +50,12 @@ const DIFFERENCES: [(&str, &str); 10] = [
     ),
 ];
 
-/// The list, and what this page's own devices add to it.
-pub fn write(data: &Data) -> String {
+/// The list, and what this page's own runs and devices add to it.
+pub fn write(data: &Data, runs: &[RecordedRun]) -> String {
     let mut entries: Vec<(String, String)> =
         DIFFERENCES.iter().map(|(what, why)| ((*what).to_owned(), (*why).to_owned())).collect();
+    entries.push(("What a time is".into(), times(runs)));
+    entries.push(("Builders".into(), builders(data)));
     for device in data.devices.iter().filter(|d| d.is_software()) {
         entries.push((
             device.label.clone(),
@@ -75,4 +70,51 @@ pub fn write(data: &Data) -> String {
     let list: String =
         entries.iter().map(|(what, why)| format!("<dt>{}</dt><dd>{}</dd>\n", escape(what), escape(why))).collect();
     format!("<dl>\n{list}</dl>\n")
+}
+
+/// How frames were timed, and whether structures took turns: by the rows themselves, because older versions did not.
+fn times(runs: &[RecordedRun]) -> String {
+    let rows = runs.iter().flat_map(|run| &run.journal.configurations);
+    let turns: Vec<usize> = rows.filter(|r| r.status == Status::Ok && r.verified).map(|r| r.turns).collect();
+    let in_turns = turns.iter().filter(|number| **number > 1).count();
+    let order = match (in_turns, turns.len()) {
+        (_, 0) => String::new(),
+        (0, _) => " Each row was timed on its own.".into(),
+        (some, all) if some == all => " Structures took turns in being timed, pass by pass.".into(),
+        (some, all) => {
+            format!(
+                " In {some} of {all} rows structures took turns in being timed, pass by pass; the others were timed each on its own."
+            )
+        }
+    };
+    format!(
+        "A frame's time is its median over several passes along the path, by the device's timestamps where there are any.{order} \
+         The thesis recorded single frames; its minimum and maximum therefore hold disturbances that ours do not."
+    )
+}
+
+/// On how many threads structures were built: by their records, since presets and --threads choose.
+fn builders(data: &Data) -> String {
+    let constants = "The constants of its builders were not printed: ours are one set for all scenes.";
+    if data.published || data.built.is_empty() {
+        return format!("The thesis built everything on one core. {constants}");
+    }
+    let mut threads: Vec<(usize, Vec<&str>)> = Vec::new();
+    for by in data.builders() {
+        let built = data.built.iter().filter(|b| b.by() == by).map(|b| structure_title(&b.structure));
+        match threads.iter_mut().find(|(number, _)| *number == by.threads) {
+            Some((_, structures)) => structures.extend(built),
+            None => threads.push((by.threads, built.collect())),
+        }
+    }
+    if let [(1, _)] = threads[..] {
+        return format!("All structures were built on one thread, as the thesis's were on one core. {constants}");
+    }
+    let line = |(number, structures): &mut (usize, Vec<&str>)| {
+        structures.sort_unstable();
+        structures.dedup();
+        format!("on {}: {}", threads_in_words(*number), structures.join(", "))
+    };
+    let lines: Vec<String> = threads.iter_mut().map(line).collect();
+    format!("Built {}. The thesis built everything on one core. {constants}", lines.join("; "))
 }

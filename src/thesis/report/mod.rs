@@ -49,7 +49,7 @@ pub fn write(sources: &Sources, options: &Options) -> Result<String> {
     body += &html::section("tables", "Tables", &(tables::write(&tables) + &tables::absent(&absent)));
     body += &html::section("figures", "Figures", &(drawn(&figures) + &undrawn(&missing)));
     body += &html::section("pictures", "Pictures", &pictures::write(sources.runs)?);
-    body += &html::section("differences", "What differs from 2009, and why", &differences::write(data));
+    body += &html::section("differences", "What differs from 2009, and why", &differences::write(data, sources.runs));
     body += &html::section("provenance", "Provenance", &provenance::write(sources.runs));
     Ok(html::page(title, &body))
 }

@@ -3,6 +3,7 @@
 use super::{Options, Rows};
 use crate::backend::Config;
 use crate::thesis::data::Data;
+use crate::thesis::number::Number;
 use crate::thesis::scenes::{SceneKey, ThesisScene};
 use crate::thesis::table::{Cell, Column, Row, Table};
 
@@ -30,13 +31,13 @@ impl Context<'_> {
     }
 
     /// A cell: the same question to both sources.
-    pub fn cell(&self, ask: impl Fn(&Data) -> Option<f64>) -> Cell {
+    pub fn cell<N: Into<Number>>(&self, ask: impl Fn(&Data) -> Option<N>) -> Cell {
         let thesis = if self.options.beside { ask(self.published) } else { None };
-        Cell::Number { value: ask(self.data), thesis }
+        Cell::Number { value: ask(self.data).map(N::into), thesis: thesis.map(N::into) }
     }
 
     /// The same for what depends on the device, with the published card that stands beside it.
-    pub fn device_cell(&self, device: usize, card: usize, ask: impl Fn(&Data, usize) -> Option<f64>) -> Cell {
+    pub fn device_cell(&self, device: usize, card: usize, ask: impl Fn(&Data, usize) -> Option<Number>) -> Cell {
         let thesis = if self.options.beside { ask(self.published, card) } else { None };
         Cell::Number { value: ask(self.data, device), thesis }
     }
@@ -69,6 +70,7 @@ impl Context<'_> {
             rows: rows.into_iter().map(|(_, row)| row).collect(),
             notes,
             beside: self.options.beside,
+            published: self.data.published,
         }
     }
 
@@ -123,6 +125,7 @@ impl Context<'_> {
             rows: Vec::new(),
             notes: vec![format!("The thesis has no numbers of the {label} in this table: they are in {where_it_is}.")],
             beside: false,
+            published: true,
         }
     }
 

@@ -38,6 +38,7 @@ fn device_table(data: &Data, title: &str) -> Table {
         columns: data.devices.iter().map(|d| Column::new(&d.label, "", Form::Whole)).collect(),
         notes: data.notes.iter().map(|note| format!("Note: {note}.")).collect(),
         beside: false,
+        published: data.published,
     }
 }
 
@@ -51,7 +52,7 @@ pub fn speedups(context: &Context) -> Vec<Table> {
         tables.push(Table {
             title: "Speed-ups between devices".into(),
             notes: vec![format!("Not measured: {absent}.")],
-            ..table_of_pair()
+            ..table_of_pair(context.data.published)
         });
     }
     if context.options.beside {
@@ -61,7 +62,7 @@ pub fn speedups(context: &Context) -> Vec<Table> {
 }
 
 /// A table of speed-ups without anything in it.
-fn table_of_pair() -> Table {
+fn table_of_pair(published: bool) -> Table {
     Table {
         id: "5.3.4".into(),
         title: String::new(),
@@ -70,6 +71,7 @@ fn table_of_pair() -> Table {
         rows: Vec::new(),
         notes: Vec::new(),
         beside: false,
+        published,
     }
 }
 
@@ -110,6 +112,6 @@ fn pair(data: &Data, other: usize) -> Option<Table> {
             format!("Mean frame time on {second} / on {first}, at the largest common resolution."),
             format!("Range: {}.", ranges.join(", ")),
         ],
-        ..table_of_pair()
+        ..table_of_pair(data.published)
     })
 }

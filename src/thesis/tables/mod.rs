@@ -103,7 +103,7 @@ fn one(context: &Context, id: &str) -> Vec<Table> {
     match id {
         "5.1" => vec![structures::scenes(context)],
         "5.2" => devices::devices(context),
-        "5.3" => vec![structures::build_times(context)],
+        "5.3" => structures::build_times(context),
         "5.4" => vec![structures::grid(context)],
         "5.5" => vec![structures::kdtree(context)],
         "5.6" => vec![structures::bvh(context)],

@@ -6,7 +6,7 @@
 use super::Rows;
 use super::context::Context;
 use crate::backend::Config;
-use crate::thesis::data::{Data, Frame, STRUCTURES, structure_title};
+use crate::thesis::data::{Data, Frame, RegisterLimit, STRUCTURES, structure_title};
 use crate::thesis::published::{GT8600, GTX280};
 use crate::thesis::scenes::SceneKey;
 use crate::thesis::table::{Cell, Column, Form, Row, Table};
@@ -73,6 +73,7 @@ fn register_limit(data: &Data, id: &str, device: usize, published: &str) -> Tabl
         rows,
         notes: vec!["Faster: 1 - time with the limit / time without, as printed.".into()],
         beside: false,
+        published: data.published,
     }
 }
 
@@ -136,7 +137,12 @@ fn stand_in(context: &Context, id: &str, device: usize) -> Table {
             names.extend(WANTED);
         }
     }
-    scenes.sort();
+    // The thesis's in the order of its own table, then the others
+    let printed = |scene: &SceneKey| {
+        let of_row = |row: &RegisterLimit| SceneKey::Thesis(row.scene) == *scene;
+        context.published.register_limit.iter().position(of_row).unwrap_or(usize::MAX)
+    };
+    scenes.sort_by(|a, b| (printed(a), a).cmp(&(printed(b), b)));
     scenes.dedup();
     names.sort_unstable();
     names.dedup();
@@ -186,5 +192,6 @@ fn stand_in(context: &Context, id: &str, device: usize) -> Table {
         rows,
         notes,
         beside: false,
+        published: false,
     }
 }

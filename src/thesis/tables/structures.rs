@@ -3,6 +3,7 @@
 use super::context::{Context, repeated};
 use crate::accel::Properties;
 use crate::scene::catalogue;
+use crate::thesis::builds::BuiltBy;
 use crate::thesis::data::{Built, Data, STRUCTURES, structure_title};
 use crate::thesis::scenes::SceneKey;
 use crate::thesis::table::{Cell, Column, Form, Row, Table};
@@ -46,28 +47,41 @@ fn path_lights(data: &Data, key: &SceneKey) -> u64 {
     lights.unwrap_or(0) as u64
 }
 
-/// Table 5.3.
-pub fn build_times(context: &Context) -> Table {
+/// Table 5.3: one per processor and number of threads, the fewest threads first. A column of two processors would compare
+/// them and not the structures, and a run on all cores would hide the one on a single core, which is the thesis's.
+pub fn build_times(context: &Context) -> Vec<Table> {
+    if context.data.published {
+        return vec![build_times_by(context, None)];
+    }
+    let scenes = context.scenes();
+    let has_any = |by: &BuiltBy| {
+        scenes.iter().any(|key| STRUCTURES.iter().any(|s| context.data.thesis_built_by(Some(*by), key, s).is_some()))
+    };
+    let builders: Vec<BuiltBy> = context.data.builders().into_iter().filter(has_any).collect();
+    if builders.is_empty() {
+        return vec![build_times_by(context, None)];
+    }
+    builders.into_iter().map(|by| build_times_by(context, Some(by))).collect()
+}
+
+/// Build times of one builder; without one, of whatever there is.
+fn build_times_by(context: &Context, by: Option<BuiltBy>) -> Table {
     let columns = STRUCTURES.map(|s| Column::new(structure_title(s), "ms", Form::Time));
-    let rows: Vec<_> = context
-        .scenes()
-        .into_iter()
-        .map(|key| {
-            let cells = STRUCTURES.map(|s| context.cell(|data| data.thesis_built(&key, s)?.build_ms));
-            (key.clone(), Row { keys: vec![key.to_string()], cells: cells.into() })
-        })
-        .collect();
-    let built: Vec<&Built> = shown(context, &rows, &STRUCTURES);
-    let mut table = context.table("5.3", "Build times".into(), &["scene"], columns.into(), rows);
-    for structure in STRUCTURES {
-        let of = built.iter().filter(|b| b.structure == structure);
-        let mut how: Vec<String> =
-            of.map(|b| format!("{} of {}", threads(b.threads.unwrap_or(1)), processor(&b.processor))).collect();
-        how.sort();
-        how.dedup();
-        if !how.is_empty() {
-            table.notes.push(format!("{} was built on {}.", structure_title(structure), how.join(", and on ")));
-        }
+    let time = |data: &Data, key: &SceneKey, structure: &str| {
+        // The thesis had another processor
+        let by = by.filter(|_| !data.published);
+        data.thesis_built_by(by, key, structure)?.time()
+    };
+    let row = |key: &SceneKey| Row {
+        keys: vec![key.to_string()],
+        cells: STRUCTURES.map(|s| context.cell(|data| time(data, key, s))).into(),
+    };
+    let rows: Vec<_> = context.scenes().into_iter().map(|key| (key.clone(), row(&key))).collect();
+    let built: Vec<&Built> = shown(context, by, &rows, &STRUCTURES);
+    let title = by.map_or("Build times".into(), |by| format!("Build times, {}", by.in_words()));
+    let mut table = context.table("5.3", title, &["scene"], columns.into(), rows);
+    if !context.data.published {
+        table.notes.extend(times_built(&built));
     }
     if context.options.beside {
         table.notes.push("Published: one core of an Athlon64 X2, 2 GHz.".into());
@@ -76,18 +90,31 @@ pub fn build_times(context: &Context) -> Table {
     table
 }
 
-fn threads(threads: usize) -> String {
-    if threads == 1 { "one thread".into() } else { format!("{threads} threads") }
-}
-
-fn processor(name: &str) -> &str {
-    if name.is_empty() { "an unknown processor" } else { name }
+/// How many builds a time stands for.
+fn times_built(built: &[&Built]) -> Option<String> {
+    let mut numbers: Vec<usize> = built.iter().map(|b| b.builds).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    match numbers[..] {
+        [] => None,
+        [1] => Some("Each structure was built once.".into()),
+        [number] => Some(format!("Each time is the median of {number} builds.")),
+        _ => {
+            let words: Vec<String> = numbers.iter().map(ToString::to_string).collect();
+            Some(format!("Times are medians of unlike numbers of builds: {}.", words.join(" or ")))
+        }
+    }
 }
 
 /// The structures behind a table's rows.
-fn shown<'a>(context: &Context<'a>, rows: &[(SceneKey, Row)], structures: &[&str]) -> Vec<&'a Built> {
+fn shown<'a>(
+    context: &Context<'a>,
+    by: Option<BuiltBy>,
+    rows: &[(SceneKey, Row)],
+    structures: &[&str],
+) -> Vec<&'a Built> {
     let data = context.data;
-    rows.iter().flat_map(|(key, _)| structures.iter().filter_map(|s| data.thesis_built(key, s))).collect()
+    rows.iter().flat_map(|(key, _)| structures.iter().filter_map(|s| data.thesis_built_by(by, key, s))).collect()
 }
 
 /// Table 5.4.
@@ -158,7 +185,9 @@ fn properties(context: &Context, id: &str, structure: &str, title: &str, columns
             (key.clone(), Row { keys: vec![key.to_string()], cells })
         })
         .collect();
-    let count = shown(context, &rows, &[structure]).iter().filter(|b| b.repeated).count();
+    // Unlike a build time, a property does not depend on who built
+    let again = |b: &&&Built| b.repeated || context.data.all_built(&b.scene, structure, &b.variant).count() > 1;
+    let count = shown(context, None, &rows, &[structure]).iter().filter(again).count();
     let mut table = context.table(id, title.into(), &["scene"], headings, rows);
     if !context.data.published {
         table

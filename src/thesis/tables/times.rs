@@ -2,7 +2,7 @@
 
 use super::context::{Context, repeated};
 use crate::backend::Config;
-use crate::thesis::data::{Data, Frame, STRUCTURES, structure_title};
+use crate::thesis::data::{Data, STRUCTURES, structure_title};
 use crate::thesis::published::{GT8600, GTX280};
 use crate::thesis::scenes::SceneKey;
 use crate::thesis::table::{Cell, Column, Form, Row, Table};
@@ -91,11 +91,10 @@ pub fn at_all_resolutions(context: &Context, id: &str) -> Vec<Table> {
 /// Rows by scene (and size, if there are several), columns by structure: fastest, slowest, mean frame.
 fn frame_times(context: &Context, id: &str, title: String, subject: &Subject) -> Table {
     let Subject { device, card, config, sides } = *subject;
-    type Of = fn(&Frame) -> f64;
-    let columns: [(&str, Of); 3] = [("min", |f| f.min_ms), ("max", |f| f.max_ms), ("mean", |f| f.mean_ms)];
+    let columns = ["min", "max", "mean"];
     let headings = STRUCTURES
         .iter()
-        .flat_map(|s| columns.iter().map(|(name, _)| Column::of(structure_title(s), name, "ms", Form::Time)))
+        .flat_map(|s| columns.iter().map(|name| Column::of(structure_title(s), name, "ms", Form::Time)))
         .collect();
     let mut rows: Vec<(SceneKey, Row)> = Vec::new();
     let mut again = 0;
@@ -103,11 +102,12 @@ fn frame_times(context: &Context, id: &str, title: String, subject: &Subject) ->
     let reflects = |key: &SceneKey| config != Config::PSR || !key.thesis().is_some_and(|scene| scene.is_object());
     for key in context.scenes() {
         for &side in sides {
-            let cell = |structure: &str, of: Of| {
-                let ask = |d: &Data, device| Some(of(d.thesis_frame(device, &key, structure, config, side)?));
+            let cell = |structure: &str, time: usize| {
+                let ask = |d: &Data, device| Some(d.thesis_frame(device, &key, structure, config, side)?.times()[time]);
                 context.device_cell(device, card, ask)
             };
-            let cells: Vec<Cell> = STRUCTURES.iter().flat_map(|s| columns.iter().map(|(_, of)| cell(s, *of))).collect();
+            let cells: Vec<Cell> =
+                STRUCTURES.iter().flat_map(|s| (0..columns.len()).map(|time| cell(s, time))).collect();
             let frames = STRUCTURES.iter().filter_map(|s| context.data.thesis_frame(device, &key, s, config, side));
             again += frames.filter(|f| f.repeated).count();
             // Of several sizes only those with a number have a row, and one that stands for the scene's absence

@@ -42,6 +42,22 @@ fn a_figure_without_data_is_named() {
     assert_eq!(missing.iter().map(|m| m.id).collect::<Vec<_>>(), ["5.1", "5.3", "5.4"]);
     // Both cards, three configurations: 5.2 and bars.
     assert_eq!(figures.len(), 12);
+    // Plain names are those of the card that the thesis shows: figure 5.2 is of tables B.4 to B.6.
+    let title = |name: &str| {
+        let figure = figures.iter().find(|f| f.name == name).unwrap_or_else(|| panic!("no {name}"));
+        let document = roxmltree::Document::parse(&figure.svg).unwrap();
+        let title = document.descendants().find(|n| n.has_tag_name(("http://www.w3.org/2000/svg", "title")));
+        title.unwrap().text().unwrap().to_owned()
+    };
+    for (name, card) in [
+        ("figure-5.2-p", "8600GT"),
+        ("figure-5.2-psr", "8600GT"),
+        ("figure-5.2-p-gtx280", "GTX280"),
+        ("frame-times-p", "GTX280"),
+        ("frame-times-p-8600gt", "8600GT"),
+    ] {
+        assert!(title(name).contains(card), "{name}: {}", title(name));
+    }
     let mut b = Builder::new();
     b.frame("bunny", "grid", Config::P, 64, 1.0).verified = false;
     let (figures, missing) = all(&measured::data(&[b.run])).unwrap();

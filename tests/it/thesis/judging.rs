@@ -118,6 +118,14 @@ fn builds_on_unlike_threads_are_not_compared() {
     let findings = judge(&measured::data(&[a.run, b.run]), &published::data(), 0);
     assert_eq!(findings[0].verdict, Verdict::NotMeasured);
     assert!(findings[0].left_out[0].contains("unlike processors"), "{findings:?}");
+    // A later run on all threads takes nothing from the one on a single thread: that is judged, the other one named.
+    let a = with(|b| build_times(b, [1.0, 2.0, 3.0]));
+    let mut b = with(|b| build_times(b, [3.0, 2.0, 1.0]));
+    b.run.journal.structures.iter_mut().for_each(|record| record.build_threads = 2);
+    let findings = judge(&measured::data(&[a.run, b.run]), &published::data(), 0);
+    assert_eq!((findings[0].verdict, findings[0].cases.len()), (Verdict::Holds, 1));
+    let words = ["Not judged on museum: builds on 2 threads of ", ", beside those on one thread of "];
+    assert!(words.iter().all(|w| findings[0].left_out[0].contains(w)), "{:?}", findings[0].left_out);
 }
 
 #[test]

@@ -1,10 +1,13 @@
 //! `results/thesis-2009`: complete, consistent with itself where it is, and with the memory model.
 
+use super::tables::{row, table};
 use rtbench::accel::memory;
 use rtbench::backend::Config;
 use rtbench::thesis::data::{Data, STRUCTURES};
 use rtbench::thesis::published::{self, GT8600, GTX280};
 use rtbench::thesis::scenes::{SceneKey, ThesisScene};
+use rtbench::thesis::table::Line;
+use rtbench::thesis::tables::Options;
 
 #[test]
 fn every_row_is_there() {
@@ -84,4 +87,89 @@ fn speedups_follow_from_the_times_but_for_one() {
         }
     }
     assert_eq!(odd, [(0, ThesisScene::Robots, "bvh")], "results/thesis-2009/README.md says so");
+}
+
+/// Rows of a file of `results/thesis-2009`, as text by the name of their column.
+fn lines(file: &str) -> Vec<impl Fn(&str) -> String> {
+    let path = format!("{}/results/thesis-2009/{file}", env!("CARGO_MANIFEST_DIR"));
+    let mut reader = csv::Reader::from_path(path).unwrap();
+    let headings = reader.headers().unwrap().clone();
+    let index = move |name: &str| headings.iter().position(|h| h == name).unwrap();
+    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    rows.into_iter()
+        .map(|row| {
+            let index = index.clone();
+            move |name: &str| row[index(name)].to_owned()
+        })
+        .collect()
+}
+
+/// What a printed table has in the row of these keys.
+#[track_caller]
+fn printed(data: &Data, id: &str, keys: &[&str]) -> Vec<String> {
+    row(&table(data, &Options::default(), id), keys, Line::Value)
+}
+
+#[test]
+fn a_printed_time_is_written_with_the_digits_that_were_printed() {
+    let data = published::data();
+    for line in lines("build_times_ms.csv") {
+        let times = ["grid_ms", "kdtree_ms", "bvh_ms"].map(&line);
+        assert_eq!(printed(&data, "5.3", &[&line("scene")]), times);
+    }
+    let number = |line: &dyn Fn(&str) -> String| ["P", "PS", "PSR"].iter().position(|c| *c == line("config")).unwrap();
+    let b = ["B.1", "B.2", "B.3", "B.4", "B.5", "B.6"].map(|id| table(&data, &Options::default(), id));
+    let at_1024 = ["5.12", "5.13", "5.14"].map(|id| table(&data, &Options::default(), id));
+    for line in lines("frame_times_ms.csv") {
+        let times = ["min_ms", "max_ms", "mean_ms"].map(&line);
+        let (scene, side) = (line("scene"), line("resolution"));
+        let from = 3 * STRUCTURES.iter().position(|s| *s == line("structure")).unwrap();
+        let of_faster = line("device") == GTX280;
+        let t = &b[number(&line) + if of_faster { 0 } else { 3 }];
+        assert_eq!(row(t, &[&scene, &side], Line::Value)[from..from + 3], times, "{scene} {side} {}", t.title);
+        if of_faster && side == "1024" {
+            assert_eq!(row(&at_1024[number(&line)], &[&scene], Line::Value)[from..from + 3], times, "{scene}");
+        }
+    }
+}
+
+#[test]
+fn every_other_printed_number_has_its_digits_too() {
+    let data = published::data();
+    for (file, id, columns) in [
+        ("scenes.csv", "5.1", &["triangles", "vertices"][..]),
+        (
+            "grid_properties.csv",
+            "5.4",
+            &["cells_x", "cells_y", "cells_z", "max_cell_triangles", "references_per_triangle", "size_mib"],
+        ),
+        (
+            "kdtree_properties.csv",
+            "5.5",
+            &["leaves", "empty_leaves", "max_leaf_triangles", "references_per_triangle", "size_mib"],
+        ),
+        ("bvh_properties.csv", "5.6", &["nodes", "size_mib"]),
+    ] {
+        for line in lines(file) {
+            let numbers: Vec<String> = columns.iter().map(|name| line(name)).collect();
+            assert_eq!(printed(&data, id, &[&line("scene")])[..columns.len()], numbers, "{file}");
+        }
+    }
+    for line in lines("traversal_counts.csv") {
+        let ray = ["primary", "shadow", "reflected"].iter().position(|r| *r == line("ray_type")).unwrap();
+        let id = ["5.9", "5.10", "5.11"][STRUCTURES.iter().position(|s| *s == line("structure")).unwrap()];
+        let cells = printed(&data, id, &[&line("scene")]);
+        let numbers = ["steps_per_ray", "primitive_tests_per_ray", "restarts_per_ray"].map(&line);
+        for (group, number) in numbers.iter().enumerate().filter(|(_, number)| !number.is_empty()) {
+            assert_eq!(cells[3 * group + ray], *number, "{id} {}", line("scene"));
+        }
+    }
+    for line in lines("register_limit.csv") {
+        let id = if line("device") == GTX280 { "5.8" } else { "5.7" };
+        let structure = rtbench::thesis::data::structure_title(&line("structure")).to_owned();
+        let cells = printed(&data, id, &[&structure, &line("registers"), &line("occupancy_percent")]);
+        let from = 2 * ["robots", "kitchen", "museum"].iter().position(|s| *s == line("scene")).unwrap();
+        let numbers = ["mean_ms", "speedup_percent"].map(&line).map(|n| if n.is_empty() { "-".into() } else { n });
+        assert_eq!(cells[from..from + 2], numbers, "{id}");
+    }
 }
