@@ -12,6 +12,7 @@ mod fetch;
 mod gltf;
 mod inventor;
 mod inventor_faces;
+mod mark;
 mod memory;
 mod mgf;
 mod mutation;
