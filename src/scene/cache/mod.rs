@@ -243,6 +243,7 @@ pub fn read(path: &Path, _: &Options) -> Result<Scene> {
         kind: Kind::Cache,
         bytes: metadata.len(),
         modified: None,
+        changed: None,
         hash: stale::hexadecimal(&header),
     });
     Ok(scene)
