@@ -297,6 +297,41 @@ fn a_sweep_is_resumed_by_the_flags_it_began_with() {
 }
 
 #[test]
+fn what_is_read_is_not_written_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    let rays = "origin_x,origin_y,origin_z,direction_x,direction_y,direction_z\n0,0,5,0,0,-1\n";
+    let mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\n";
+    let files = [("a.csv", rays), ("m.obj", mesh), ("p.toml", "kind = \"orbit\"\n")];
+    for (name, text) in files {
+        std::fs::write(at(name), text).unwrap();
+    }
+    std::fs::create_dir(at("sub")).unwrap();
+    good(&format!("scenes convert {} {}", at("m.obj"), at("m.rtb")));
+    let mut outs = vec![at("a.csv"), at("sub/../a.csv")];
+    if cfg!(unix) {
+        for kind in ["-s", "-P"] {
+            let link = at(&format!("link{kind}.csv"));
+            assert!(Command::new("ln").args([kind, &at("a.csv"), &link]).status().unwrap().success());
+            outs.push(link);
+        }
+    }
+    for out in outs {
+        let trace = format!("trace --scene {} --backend cpu --rays {} -o {out}", at("m.obj"), at("a.csv"));
+        one_error(&run(&trace), &["is the same file as", "a.csv", "write to another file"]);
+    }
+    let scene = at("m.obj");
+    one_error(&run(&format!("trace --scene {scene} --backend cpu --rays {} -o {scene}", at("a.csv"))), &["m.obj"]);
+    one_error(&run(&format!("scenes convert {0}:scale=2 {0}", at("m.rtb"))), &["m.rtb", "same file"]);
+    one_error(&run(&format!("camera-path export {scene} -o {scene}")), &["m.obj", "same file"]);
+    let path = at("p.toml");
+    one_error(&run(&format!("camera-path export {scene} --camera-path {path} -o {path}")), &["p.toml", "same file"]);
+    for (name, text) in files {
+        assert_eq!(std::fs::read_to_string(at(name)).unwrap(), text, "{name}");
+    }
+}
+
+#[test]
 fn the_thesis_preset_names_what_is_absent() {
     let folder = tempfile::tempdir().unwrap();
     let scenes = folder.path().join("scenes/bunny");
