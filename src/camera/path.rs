@@ -130,7 +130,7 @@ impl CameraPath {
         // Without the options that may stand behind the file's name
         let name = scene.split(':').next().unwrap_or_default().to_owned();
         let description = format!("The camera of the scene file {name}");
-        let hash = blake3::hash(super::to_toml(camera, &description).as_bytes()).to_hex().to_string();
+        let hash = blake3::hash(super::to_toml(camera, &[], &description).as_bytes()).to_hex().to_string();
         CameraPath {
             place: name.clone(),
             name,
@@ -223,12 +223,26 @@ impl CameraPath {
         Ok(View { camera, lights: self.lights_for(scene, bounds, &camera) })
     }
 
+    /// True if each frame has a light of its own, as a light orbit's have.
+    pub fn moves_light(&self) -> bool {
+        matches!(self.kind, Kind::LightOrbit(_))
+    }
+
+    /// The path's own lights that stand still, in this scene.
+    pub fn lights(&self, scene: &Scene) -> Vec<Light> {
+        self.lights_in(scene.bounds())
+    }
+
+    fn lights_in(&self, bounds: Aabb) -> Vec<Light> {
+        let place = |l: &PathLight| if l.relative { in_bounds(bounds, l.position) } else { l.position };
+        self.lights.iter().map(|l| Light::new(place(l), l.colour)).collect()
+    }
+
     /// The path's lights, or the scene's, or the default light: white, half the scene's radius above and a quarter to the
     /// left of the camera, and moving with it, so that what is seen is lit.
     fn lights_for(&self, scene: &Scene, bounds: Aabb, camera: &Camera) -> Vec<Light> {
         if !self.lights.is_empty() {
-            let place = |l: &PathLight| if l.relative { in_bounds(bounds, l.position) } else { l.position };
-            return self.lights.iter().map(|l| Light::new(place(l), l.colour)).collect();
+            return self.lights_in(bounds);
         }
         if !scene.lights.is_empty() {
             return scene.lights.clone();

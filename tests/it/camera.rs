@@ -336,10 +336,17 @@ fn a_scene_with_a_camera_of_its_own_is_seen_through_it() {
 #[test]
 fn an_exported_path_shows_the_same_views_to_the_bit() {
     let scene = filmed(200);
-    for path in [CameraPath::for_scene(&scene, Config::P), CameraPath::load("orbit").unwrap(), from_text(WALK).unwrap()]
-    {
+    let with_lights = format!(
+        "{WALK}[[lights]]\nposition = [0.3, 1, 0.7]\nrelative = true\n[[lights]]\nposition = [1, 2, 3]\ncolour = [0.1, 0, 1]\n"
+    );
+    for path in [
+        CameraPath::for_scene(&scene, Config::P),
+        CameraPath::load("orbit").unwrap(),
+        from_text(WALK).unwrap(),
+        from_text(&with_lights).unwrap(),
+    ] {
         let recorded = path.poses(&scene, None).unwrap();
-        let again = from_text(&to_toml(&recorded, "\"quoted\"\nlines")).unwrap();
+        let again = from_text(&to_toml(&recorded, &path.lights(&scene), "\"quoted\"\nlines")).unwrap();
         assert_eq!(again.description, "\"quoted\"\nlines");
         assert_eq!(again.poses(&scene, None).unwrap(), recorded);
         assert_eq!(again.views(&scene, None).unwrap(), path.views(&scene, None).unwrap(), "{}", path.name);

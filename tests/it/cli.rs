@@ -332,6 +332,17 @@ fn what_is_read_is_not_written_over() {
 }
 
 #[test]
+fn a_moving_light_is_not_exported_without_a_word() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["lo.toml", "lo.csv"] {
+        let out = folder.path().join(name);
+        let export = format!("camera-path export scan:triangles=1000 --camera-path light-orbit -o {}", out.display());
+        one_error(&run(&export), &["light-orbit", "its light moves", "--camera-path light-orbit"]);
+        assert!(!out.exists());
+    }
+}
+
+#[test]
 fn the_thesis_preset_names_what_is_absent() {
     let folder = tempfile::tempdir().unwrap();
     let scenes = folder.path().join("scenes/bunny");
