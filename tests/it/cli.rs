@@ -496,7 +496,10 @@ fn lists_and_help() {
         assert!(good("scenes list").lines().any(|line| line.trim() == name), "{name}");
     }
     let text = good("scenes info scan:triangles=1000");
-    assert!(text.contains("content hash") && text.contains("kdtree, estimated"), "{text}");
+    assert!(
+        text.contains("content hash") && text.contains("kdtree, estimated") && text.contains("within a factor of 2"),
+        "{text}"
+    );
     assert!(good("devices").contains("--backend cpu"));
     assert!(good("completions bash").contains("rtbench"));
     assert!(good("--version").contains("revision"));
