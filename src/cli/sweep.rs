@@ -58,7 +58,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
     /// Go on with the run in this folder, by the flags it began with: rows that it has are kept
-    #[arg(long, value_name = "FOLDER", exclusive = true)]
+    #[arg(long, value_name = "FOLDER", conflicts_with_all = BEGINNING)]
     resume: Option<PathBuf>,
     /// No progress, no table: only errors
     #[arg(long, short)]
@@ -66,6 +66,27 @@ pub struct Arguments {
     #[command(flatten)]
     device: DeviceArguments,
 }
+
+/// Flags that belong to the beginning of a run: all but those that only say what is printed. (`exclusive` would refuse
+/// those as well, without a word about which flag it means.)
+const BEGINNING: [&str; 16] = [
+    "preset",
+    "scene",
+    "scenes_dir",
+    "scene_time",
+    "camera_path",
+    "structure",
+    "config",
+    "resolution",
+    "frames",
+    "passes",
+    "warmup",
+    "out",
+    "backend",
+    "adapter",
+    "checked",
+    "threads",
+];
 
 const EXAMPLES: &str = "\
 Examples:
@@ -89,15 +110,21 @@ on only with the same build of the program on the same device, with scenes and c
 /// # Errors
 /// What could not run; wrong answers are the exit code 1.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
-    let Some(folder) = &arguments.resume else { return measure(arguments, Earlier::default()) };
-    let earlier = Earlier::read(folder)?;
+    let Some(run) = &arguments.resume else { return measure(arguments, Earlier::default()) };
+    let folder = journal::folder_of(run);
+    let earlier = Earlier::read(&folder)?;
     if earlier.is_complete() {
-        output::note(&format!("nothing is left to measure in {}", folder.display()));
+        if !arguments.quiet {
+            output::note(&format!("nothing is left to measure in {}", folder.display()));
+        }
         return Ok(ExitCode::SUCCESS);
     }
     let recorded = earlier.provenance().map(|provenance| &provenance.arguments[..]).unwrap_or_default();
     match super::parse(recorded) {
-        Some(super::Command::Sweep(began)) => measure(&Arguments { out: Some(folder.clone()), ..began }, earlier),
+        Some(super::Command::Sweep(began)) => {
+            let quiet = arguments.quiet || began.quiet;
+            measure(&Arguments { out: Some(folder), quiet, ..began }, earlier).map_err(from_elsewhere)
+        }
         _ => {
             let problem = format!("it began with a command that this program does not know: {}", recorded.join(" "));
             Err(Error::file(&folder.join(journal::FILE_NAME), Some(1), problem, "begin a new run"))

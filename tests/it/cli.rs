@@ -270,6 +270,8 @@ fn a_sweep_is_resumed_by_the_flags_it_began_with() {
     let whole = std::fs::read_to_string(&journal).unwrap();
     let resume = format!("sweep --resume {out_name}");
     assert!(stderr(&run(&resume)).contains("nothing is left to measure"));
+    assert_eq!(stderr(&run(&format!("{resume}/{FILE_NAME}"))), stderr(&run(&resume)));
+    assert_eq!(stderr(&run(&format!("{resume} -q"))), "");
     assert_eq!(std::fs::read_to_string(&journal).unwrap(), whole);
 
     // Killed in the middle of its third row
@@ -279,6 +281,12 @@ fn a_sweep_is_resumed_by_the_flags_it_began_with() {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert!(stderr(&output).contains("2 of 4 rows are there already"), "{}", stderr(&output));
     let resumed = Journal::read(&journal).unwrap();
+    // Without a word, and by the journal's name
+    let by_journal = tempfile::tempdir().unwrap();
+    std::fs::write(by_journal.path().join(FILE_NAME), &whole[..third + 40]).unwrap();
+    let output = command(&format!("sweep --quiet --resume {FILE_NAME}")).current_dir(&by_journal).output().unwrap();
+    assert_eq!((output.status.code(), stderr(&output), stdout(&output)), (Some(0), String::new(), String::new()));
+    assert!(by_journal.path().join("summary.csv").is_file());
     assert_eq!((resumed.configurations.len(), resumed.structures.len(), resumed.resumed.len()), (4, 2, 1));
     assert_eq!(resumed.resumed[0].arguments[1..], ["sweep".to_owned(), "--resume".to_owned(), out_name.to_string()]);
     assert!(resumed.configurations.iter().all(|row| row.status == Status::Ok));
@@ -290,10 +298,32 @@ fn a_sweep_is_resumed_by_the_flags_it_began_with() {
     std::fs::write(&journal, &whole[..third + 40]).unwrap();
     std::fs::write(&scene, ply.replace("0 0 1\n", "0 0 2\n")).unwrap();
     one_error(&run(&resume), &["journal.jsonl", "pyramid is not the scene that it was", "begin a new run"]);
-    one_error(&run(&format!("{resume} --frames 3")), &["--resume", "cannot be used with"]);
-    one_error(&run(&format!("sweep --resume {}", folder.path().display())), &["journal.jsonl", "cannot read"]);
+    one_error(&run(&format!("{resume} --frames 3")), &["--resume", "cannot be used with", "--frames"]);
+    one_error(
+        &run(&format!("sweep --resume {}", folder.path().display())),
+        &["journal.jsonl", "cannot read", "the folder of a run"],
+    );
     std::fs::write(&journal, whole[..third].replacen("\"sweep\"", "\"swoop\"", 1)).unwrap();
     one_error(&run(&resume), &["journal.jsonl:1:", "does not know"]);
+}
+
+/// With every flag of the beginning, as `--help` lists them, and the error names it.
+#[test]
+fn a_resumed_run_takes_no_other_flags() {
+    let help = good("sweep --help");
+    let flags: Vec<&str> = help.lines().map(str::trim).filter(|line| line.starts_with("--")).collect();
+    assert!(flags.len() > 15, "{help}");
+    for line in flags {
+        let (flag, value) = line.split_once(' ').unwrap_or((line, ""));
+        let value = match flag {
+            "--resume" => continue,
+            "--backend" => "cpu",
+            _ if value.is_empty() => "",
+            _ => "1",
+        };
+        one_error(&run(&format!("sweep --resume nosuch {flag} {value}")), &["--resume", "cannot be used with", flag]);
+    }
+    one_error(&run("sweep --resume nosuch -q"), &["nosuch/journal.jsonl", "give the folder of a run"]);
 }
 
 #[test]
