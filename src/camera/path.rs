@@ -26,6 +26,11 @@ const EMBEDDED: &[(&str, &str)] = &[
     ("sponza", include_str!("../../camera-paths/sponza.toml")),
 ];
 
+/// Where an embedded path stands in errors.
+fn embedded_place(name: &str) -> String {
+    format!("camera-paths/{name}.toml")
+}
+
 /// The names of the embedded paths.
 pub fn names() -> Vec<&'static str> {
     EMBEDDED.iter().map(|(name, _)| *name).collect()
@@ -97,7 +102,7 @@ impl CameraPath {
             return file::parse(&name, name_or_file, &text);
         }
         match EMBEDDED.iter().find(|(name, _)| *name == name_or_file) {
-            Some((name, text)) => file::parse(name, &format!("camera-paths/{name}.toml"), text),
+            Some((name, text)) => file::parse(name, &embedded_place(name), text),
             None => {
                 let problem = "no file and no built-in camera path is called so";
                 Err(Error::argument(name_or_file, problem, did_you_mean(name_or_file, &names())))
@@ -161,7 +166,7 @@ impl CameraPath {
             return Err(Error::argument(
                 &self.place,
                 format!("{wanted} frames wanted, but the path has {}", self.frames),
-                format!("take 1 to {} frames, or raise `frames` in the file", self.frames),
+                format!("take 1 to {} frames{}", self.frames, self.more_frames()),
             ));
         }
         let bounds = scene.bounds();
@@ -192,6 +197,16 @@ impl CameraPath {
                     self.view(scene, bounds, frame(i), camera)
                 })
                 .collect(),
+        }
+    }
+
+    /// What else helps where a path has too few frames. Only a file of the user's own can be given more.
+    fn more_frames(&self) -> &'static str {
+        let embedded = EMBEDDED.iter().any(|(name, _)| self.place == embedded_place(name));
+        match &self.kind {
+            _ if embedded || !Path::new(&self.place).is_file() => "",
+            Kind::Recorded(_) => ", or add poses to the file",
+            _ => ", or raise `frames` in the file",
         }
     }
 
