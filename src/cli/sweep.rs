@@ -132,6 +132,24 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     }
 }
 
+/// Of a run that is taken up again: what is not found may be so because names without a folder mean another one here. The
+/// journal cannot tell which, for no path of the machine stands in it.
+fn from_elsewhere(error: Error) -> Error {
+    match error {
+        Error::Input(mut input) if is_absent_here(Path::new(&input.place)) => {
+            let separator = if input.mend.is_empty() { "" } else { "; " };
+            input.mend += &format!("{separator}a run is resumed from the folder in which it was begun");
+            Error::Input(input)
+        }
+        other => other,
+    }
+}
+
+/// True for what may be a file's name, seen from this folder, without the file.
+fn is_absent_here(place: &Path) -> bool {
+    place.is_relative() && !place.exists() && !place.to_string_lossy().starts_with("--")
+}
+
 /// Measures what is planned and not there yet.
 fn measure(arguments: &Arguments, earlier: Earlier) -> Result<ExitCode> {
     let mut plan = Plan::new(&Request {

@@ -327,6 +327,23 @@ fn a_resumed_run_takes_no_other_flags() {
 }
 
 #[test]
+fn a_run_of_relative_names_is_resumed_where_it_was_begun() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("n.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\n").unwrap();
+    let here = |arguments: &str| command(arguments).current_dir(&folder).output().unwrap();
+    let begun =
+        here("sweep --backend cpu --scene n.obj --frames 1 --resolution 8 --config P --structure bvh,grid --out k");
+    assert_eq!(begun.status.code(), Some(0), "{}", stderr(&begun));
+    let journal = folder.path().join("k").join(FILE_NAME);
+    let whole = std::fs::read_to_string(&journal).unwrap();
+    let second = whole.match_indices("\"record\":\"configuration\"").nth(1).unwrap().0;
+    std::fs::write(&journal, &whole[..second + 40]).unwrap();
+    let elsewhere = format!("sweep --resume {}", folder.path().join("k").display());
+    one_error(&run(&elsewhere), &["n.obj: no such file", "is resumed from the folder in which it was begun"]);
+    assert_eq!(here("sweep --resume k").status.code(), Some(0));
+}
+
+#[test]
 fn what_is_read_is_not_written_over() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name).display().to_string();
