@@ -390,6 +390,12 @@ fn a_moving_light_is_not_exported_without_a_word() {
 }
 
 #[test]
+fn an_empty_folder_of_scenes_is_none() {
+    let output = command("scenes info bunny").env("RTBENCH_SCENES", "").output().unwrap();
+    one_error(&output, &["no folder of scenes is given", "RTBENCH_SCENES"]);
+}
+
+#[test]
 fn the_thesis_preset_names_what_is_absent() {
     let folder = tempfile::tempdir().unwrap();
     let scenes = folder.path().join("scenes/bunny");
