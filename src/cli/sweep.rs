@@ -183,9 +183,9 @@ fn measure(arguments: &Arguments, earlier: Earlier) -> Result<ExitCode> {
         None => default_folder(&device.backend.info().name),
     };
 
-    let stop = ctrl_c()?;
-    let interrupted = || stop.load(Ordering::Relaxed);
     let mut progress = Progress::new(plan.configurations(), work, arguments.quiet);
+    let stop = ctrl_c(progress.teller())?;
+    let interrupted = || stop.load(Ordering::Relaxed);
     if earlier.settled() > 0 && !arguments.quiet {
         output::note(&format!("{} of {} rows are there already", earlier.settled(), plan.configurations()));
     }
@@ -240,14 +240,16 @@ fn default_folder(device: &str) -> PathBuf {
     Path::new("results").join(format!("{}-{}", environment::now_for_file_name(), files::slug(device)))
 }
 
-/// A flag that Ctrl-C sets. The second Ctrl-C ends the program at once: the journal is on the disk anyway.
-fn ctrl_c() -> Result<Arc<AtomicBool>> {
+/// A flag that Ctrl-C sets, and says so. The second Ctrl-C ends the program at once: the journal is on the disk anyway. The
+/// handler runs on a thread of its own, where printing is allowed.
+fn ctrl_c(tell: impl Fn(&str) + Send + 'static) -> Result<Arc<AtomicBool>> {
     let flag = Arc::new(AtomicBool::new(false));
     let set = Arc::clone(&flag);
     ctrlc::set_handler(move || {
         if set.swap(true, Ordering::Relaxed) {
             std::process::exit(130);
         }
+        tell("stopping after this frame; Ctrl-C again ends at once");
     })
     .map_err(|e| Error::Device(format!("cannot listen for Ctrl-C: {e}")))?;
     Ok(flag)

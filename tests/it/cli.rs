@@ -244,6 +244,7 @@ fn ctrl_c_in_the_middle() {
     let text = stderr(&output);
     assert_eq!(output.status.code(), Some(130), "{text}");
     assert!(text.contains("rtbench: error: interrupted") && !text.contains("panicked"), "{text}");
+    assert_eq!(text.matches("rtbench: stopping after this frame; Ctrl-C again ends at once\n").count(), 1, "{text}");
     let journal = Journal::read(&journal).unwrap();
     assert_eq!(journal.configurations.len(), 1);
     assert!(journal.end.as_ref().unwrap().interrupted);
