@@ -18,7 +18,9 @@ pub fn measuring() -> bool {
 
 /// The real models, if the environment says where they are: `(name, scene)`.
 pub fn models() -> Vec<(&'static str, Scene)> {
-    let Some(folder) = std::env::var_os("RTBENCH_SCENES").map(std::path::PathBuf::from) else {
+    let Some(folder) =
+        std::env::var_os("RTBENCH_SCENES").filter(|folder| !folder.is_empty()).map(std::path::PathBuf::from)
+    else {
         eprintln!("bunny and dragon are left out: RTBENCH_SCENES is not set");
         return Vec::new();
     };

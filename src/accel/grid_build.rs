@@ -88,12 +88,7 @@ type Range = [[u32; 2]; 3];
 
 /// Chooses the resolution and finds every triangle's cells; returns how many records that makes.
 fn lay_out(scene: &Scene, config: &Config, prims: &[Prim], bounds: &Aabb) -> Result<(Layout, Vec<Range>, u64)> {
-    let by_hand = config.resolution.iter().any(Option::is_some);
-    let mut layout = if by_hand {
-        Layout::by_hand(&scene.name, bounds, config.resolution)?
-    } else {
-        Layout::by_rule(bounds, prims.len(), config.factor)
-    };
+    let (mut layout, by_hand) = Layout::first(scene, config, prims.len(), bounds)?;
     loop {
         let mut total = 0_u64;
         let ranges: Vec<Range> = prims
@@ -128,8 +123,16 @@ pub(super) struct Layout {
 }
 
 impl Layout {
+    /// The one to begin with, and true if it was set by hand: then it is the last as well.
+    pub fn first(scene: &Scene, config: &Config, triangles: usize, bounds: &Aabb) -> Result<(Layout, bool)> {
+        if config.resolution.iter().any(Option::is_some) {
+            return Ok((Layout::by_hand(&scene.name, bounds, config.resolution)?, true));
+        }
+        Ok((Layout::by_rule(bounds, triangles, config.factor), false))
+    }
+
     /// `floor(factor n^(1/4))` cubes on the shortest axis that has any extent at all.
-    pub fn by_rule(bounds: &Aabb, triangles: usize, factor: f64) -> Layout {
+    fn by_rule(bounds: &Aabb, triangles: usize, factor: f64) -> Layout {
         let extent = extent(bounds);
         let cells = (factor * (triangles as f64).powf(0.25)).floor().clamp(1.0, 1e6) as u32;
         let shortest = (0..3).filter(|&a| extent[a] > 0.0).min_by(|&a, &b| extent[a].total_cmp(&extent[b]));

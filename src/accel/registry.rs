@@ -311,9 +311,19 @@ pub fn variants() -> &'static [VariantInfo] {
 }
 
 fn build_grid(s: &Selection, scene: &Scene) -> Result<Structure> {
+    grid_build::build(scene, &grid(s)).map(Structure::Grid)
+}
+
+fn grid(s: &Selection) -> grid_build::Config {
     let resolution = [s.count("x"), s.count("y"), s.count("z")];
-    let config = grid_build::Config { resolution, factor: s.number("factor") };
-    grid_build::build(scene, &config).map(Structure::Grid)
+    grid_build::Config { resolution, factor: s.number("factor") }
+}
+
+impl Selection {
+    /// What the grid is built with, if this is one.
+    pub fn grid_config(&self) -> Option<grid_build::Config> {
+        (self.info().builder == "grid").then(|| grid(self))
+    }
 }
 
 fn cost(s: &Selection) -> CostModel {

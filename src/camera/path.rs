@@ -26,6 +26,11 @@ const EMBEDDED: &[(&str, &str)] = &[
     ("sponza", include_str!("../../camera-paths/sponza.toml")),
 ];
 
+/// Where an embedded path stands in errors.
+fn embedded_place(name: &str) -> String {
+    format!("camera-paths/{name}.toml")
+}
+
 /// The names of the embedded paths.
 pub fn names() -> Vec<&'static str> {
     EMBEDDED.iter().map(|(name, _)| *name).collect()
@@ -97,7 +102,7 @@ impl CameraPath {
             return file::parse(&name, name_or_file, &text);
         }
         match EMBEDDED.iter().find(|(name, _)| *name == name_or_file) {
-            Some((name, text)) => file::parse(name, &format!("camera-paths/{name}.toml"), text),
+            Some((name, text)) => file::parse(name, &embedded_place(name), text),
             None => {
                 let problem = "no file and no built-in camera path is called so";
                 Err(Error::argument(name_or_file, problem, did_you_mean(name_or_file, &names())))
@@ -130,7 +135,7 @@ impl CameraPath {
         // Without the options that may stand behind the file's name
         let name = scene.split(':').next().unwrap_or_default().to_owned();
         let description = format!("The camera of the scene file {name}");
-        let hash = blake3::hash(super::to_toml(camera, &description).as_bytes()).to_hex().to_string();
+        let hash = blake3::hash(super::to_toml(camera, &[], &description).as_bytes()).to_hex().to_string();
         CameraPath {
             place: name.clone(),
             name,
@@ -161,7 +166,7 @@ impl CameraPath {
             return Err(Error::argument(
                 &self.place,
                 format!("{wanted} frames wanted, but the path has {}", self.frames),
-                format!("take 1 to {} frames, or raise `frames` in the file", self.frames),
+                format!("take 1 to {} frames{}", self.frames, self.more_frames()),
             ));
         }
         let bounds = scene.bounds();
@@ -195,6 +200,16 @@ impl CameraPath {
         }
     }
 
+    /// What else helps where a path has too few frames. Only a file of the user's own can be given more.
+    fn more_frames(&self) -> &'static str {
+        let embedded = EMBEDDED.iter().any(|(name, _)| self.place == embedded_place(name));
+        match &self.kind {
+            _ if embedded || !Path::new(&self.place).is_file() => "",
+            Kind::Recorded(_) => ", or add poses to the file",
+            _ => ", or raise `frames` in the file",
+        }
+    }
+
     fn stands_still(&self) -> bool {
         matches!(&self.kind, Kind::Recorded(recorded) if recorded.poses.len() == 1)
     }
@@ -223,12 +238,26 @@ impl CameraPath {
         Ok(View { camera, lights: self.lights_for(scene, bounds, &camera) })
     }
 
+    /// True if each frame has a light of its own, as a light orbit's have.
+    pub fn moves_light(&self) -> bool {
+        matches!(self.kind, Kind::LightOrbit(_))
+    }
+
+    /// The path's own lights that stand still, in this scene.
+    pub fn lights(&self, scene: &Scene) -> Vec<Light> {
+        self.lights_in(scene.bounds())
+    }
+
+    fn lights_in(&self, bounds: Aabb) -> Vec<Light> {
+        let place = |l: &PathLight| if l.relative { in_bounds(bounds, l.position) } else { l.position };
+        self.lights.iter().map(|l| Light::new(place(l), l.colour)).collect()
+    }
+
     /// The path's lights, or the scene's, or the default light: white, half the scene's radius above and a quarter to the
     /// left of the camera, and moving with it, so that what is seen is lit.
     fn lights_for(&self, scene: &Scene, bounds: Aabb, camera: &Camera) -> Vec<Light> {
         if !self.lights.is_empty() {
-            let place = |l: &PathLight| if l.relative { in_bounds(bounds, l.position) } else { l.position };
-            return self.lights.iter().map(|l| Light::new(place(l), l.colour)).collect();
+            return self.lights_in(bounds);
         }
         if !scene.lights.is_empty() {
             return scene.lights.clone();

@@ -2,7 +2,7 @@
 
 use super::{Camera, CameraPath, View};
 use crate::error::Result;
-use crate::scene::{Pose, Scene, SceneCamera};
+use crate::scene::{Light, Pose, Scene, SceneCamera};
 use std::fmt::Write;
 
 /// A camera per frame.
@@ -43,9 +43,9 @@ impl CameraPath {
     }
 }
 
-/// A camera path file of recorded frames. It gives the same views again, to the bit: numbers are written with as many
-/// digits as it takes.
-pub fn to_toml(camera: &SceneCamera, description: &str) -> String {
+/// A camera path file of recorded frames, and of the path's own lights if it has some. It gives the same views again, to
+/// the bit: numbers are written with as many digits as it takes.
+pub fn to_toml(camera: &SceneCamera, lights: &[Light], description: &str) -> String {
     let description = toml::Value::from(description);
     let mut text = format!("description = {description}\nkind = \"frames\"\n");
     let _ = writeln!(text, "field_of_view = {:?}", camera.field_of_view);
@@ -58,7 +58,12 @@ pub fn to_toml(camera: &SceneCamera, description: &str) -> String {
         }
         text += "],\n";
     }
-    text + "]\n"
+    text += "]\n";
+    for Light { position: p, colour: c, .. } in lights {
+        let _ = writeln!(text, "[[lights]]\nposition = [{:?}, {:?}, {:?}]", p.x, p.y, p.z);
+        let _ = writeln!(text, "colour = [{:?}, {:?}, {:?}]", c.x, c.y, c.z);
+    }
+    text
 }
 
 /// Recorded frames as CSV, a row for each: its number, its time, position, direction and up.

@@ -4,10 +4,10 @@ use super::library::LibraryArguments;
 use super::output;
 use crate::camera::{self, CameraPath};
 use crate::config::Config;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::results::files;
 use clap::Subcommand;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// List the built-in camera paths, or write a scene's camera path to a file
 #[derive(Subcommand, Debug)]
@@ -18,7 +18,7 @@ pub enum Command {
     /// Write a scene's camera path, frame by frame
     ///
     /// A file that ends in .csv gets a row per frame: frame, time, position, direction, up. Any other becomes a camera
-    /// path file that shows the same views again, to the bit, in every scene.
+    /// path file that shows the same views again, to the bit, in every scene. A path whose light moves cannot be written.
     Export {
         /// Scene file, or built-in scene with parameters
         #[arg(value_name = "FILE|NAME[:KEY=VALUE,..]")]
@@ -54,12 +54,18 @@ pub fn run(command: &Command) -> Result<()> {
             output::print(&camera::descriptions().into_iter().map(line).collect::<String>())
         }
         Command::Export { scene, library, camera_path, frames, out } => {
-            let scene = library.load(scene)?;
+            let (scene, sources) = library.load_with_sources(scene)?;
+            files::keep(out, sources.paths().chain(camera_path.as_deref().map(Path::new)))?;
             let path = CameraPath::named_or_fitting(camera_path.as_deref(), &scene, Config::P)?;
+            if path.moves_light() {
+                let name = camera_path.as_deref().unwrap_or(&path.name);
+                let problem = "its light moves, and recorded frames have only a camera";
+                return Err(Error::argument(name, problem, format!("use the path itself: --camera-path {name}")));
+            }
             let recorded = path.poses(&scene, *frames)?;
             let text = match out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv")) {
                 true => camera::to_csv(&recorded),
-                false => camera::to_toml(&recorded, &format!("{} in {}", path.name, scene.name)),
+                false => camera::to_toml(&recorded, &path.lights(&scene), &format!("{} in {}", path.name, scene.name)),
             };
             files::replace(out, text.as_bytes())?;
             output::print(&format!("{}: {} frames of {}\n", out.display(), recorded.frames.len(), path.name))

@@ -19,9 +19,10 @@ pub struct LibraryArguments {
 }
 
 impl LibraryArguments {
-    /// The folder, if there is one.
+    /// The folder, if there is one. An empty variable is as good as none.
     pub fn folder(&self) -> Option<PathBuf> {
-        self.scenes_dir.clone().or_else(|| std::env::var_os("RTBENCH_SCENES").map(PathBuf::from))
+        let variable = || std::env::var_os("RTBENCH_SCENES").filter(|folder| !folder.is_empty());
+        self.scenes_dir.clone().or_else(|| variable().map(PathBuf::from))
     }
 
     /// The scene at the moment that was asked for, if one was; a note on standard error where that means nothing.

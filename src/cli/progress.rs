@@ -58,15 +58,17 @@ impl Progress {
                 self.done = (self.done + work).min(self.work);
                 self.last = (self.done, Instant::now());
             }
-            Event::Note(text) => self.line(&text),
+            Event::Note(text) => line(self.bar.as_ref(), &text),
         }
     }
 
-    /// A line that stays, above the bar if there is one.
-    fn line(&self, text: &str) {
-        match &self.bar {
-            Some(bar) => bar.println(format!("rtbench: {text}")),
-            None => output::note(text),
+    /// What prints lines that stay, as this does, on other threads as well; nothing if it is to be quiet.
+    pub fn teller(&self) -> impl Fn(&str) + Send + use<> {
+        let (bar, quiet) = (self.bar.clone(), self.quiet);
+        move |text| {
+            if !quiet {
+                line(bar.as_ref(), text);
+            }
         }
     }
 
@@ -87,10 +89,13 @@ impl Progress {
             record.scene.name, record.structure, record.config, record.width, record.height
         );
         if record.status == Status::Error {
-            self.line(&format!("{}/{} {what}: ERROR: {}", self.finished, self.rows, record.message));
+            line(self.bar.as_ref(), &format!("{}/{} {what}: ERROR: {}", self.finished, self.rows, record.message));
         } else if self.bar.is_none() && !self.quiet {
             let mean = summary::frame_statistics(record).map_or(0.0, |s| s.mean_ms);
-            self.line(&format!("{}/{} {what}: {mean:.2} ms{}", self.finished, self.rows, self.estimate()));
+            line(
+                self.bar.as_ref(),
+                &format!("{}/{} {what}: {mean:.2} ms{}", self.finished, self.rows, self.estimate()),
+            );
         }
     }
 
@@ -110,5 +115,13 @@ impl Progress {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
+    }
+}
+
+/// A line that stays, above the bar if there is one.
+fn line(bar: Option<&ProgressBar>, text: &str) {
+    match bar {
+        Some(bar) => bar.println(format!("rtbench: {text}")),
+        None => output::note(text),
     }
 }

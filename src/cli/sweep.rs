@@ -58,7 +58,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
     /// Go on with the run in this folder, by the flags it began with: rows that it has are kept
-    #[arg(long, value_name = "FOLDER", exclusive = true)]
+    #[arg(long, value_name = "FOLDER", conflicts_with_all = BEGINNING)]
     resume: Option<PathBuf>,
     /// No progress, no table: only errors
     #[arg(long, short)]
@@ -66,6 +66,27 @@ pub struct Arguments {
     #[command(flatten)]
     device: DeviceArguments,
 }
+
+/// Flags that belong to the beginning of a run: all but those that only say what is printed. (`exclusive` would refuse
+/// those as well, without a word about which flag it means.)
+const BEGINNING: [&str; 16] = [
+    "preset",
+    "scene",
+    "scenes_dir",
+    "scene_time",
+    "camera_path",
+    "structure",
+    "config",
+    "resolution",
+    "frames",
+    "passes",
+    "warmup",
+    "out",
+    "backend",
+    "adapter",
+    "checked",
+    "threads",
+];
 
 const EXAMPLES: &str = "\
 Examples:
@@ -89,20 +110,44 @@ on only with the same build of the program on the same device, with scenes and c
 /// # Errors
 /// What could not run; wrong answers are the exit code 1.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
-    let Some(folder) = &arguments.resume else { return measure(arguments, Earlier::default()) };
-    let earlier = Earlier::read(folder)?;
+    let Some(run) = &arguments.resume else { return measure(arguments, Earlier::default()) };
+    let folder = journal::folder_of(run);
+    let earlier = Earlier::read(&folder)?;
     if earlier.is_complete() {
-        output::note(&format!("nothing is left to measure in {}", folder.display()));
+        if !arguments.quiet {
+            output::note(&format!("nothing is left to measure in {}", folder.display()));
+        }
         return Ok(ExitCode::SUCCESS);
     }
     let recorded = earlier.provenance().map(|provenance| &provenance.arguments[..]).unwrap_or_default();
     match super::parse(recorded) {
-        Some(super::Command::Sweep(began)) => measure(&Arguments { out: Some(folder.clone()), ..began }, earlier),
+        Some(super::Command::Sweep(began)) => {
+            let quiet = arguments.quiet || began.quiet;
+            measure(&Arguments { out: Some(folder), quiet, ..began }, earlier).map_err(from_elsewhere)
+        }
         _ => {
             let problem = format!("it began with a command that this program does not know: {}", recorded.join(" "));
             Err(Error::file(&folder.join(journal::FILE_NAME), Some(1), problem, "begin a new run"))
         }
     }
+}
+
+/// Of a run that is taken up again: what is not found may be so because names without a folder mean another one here. The
+/// journal cannot tell which, for no path of the machine stands in it.
+fn from_elsewhere(error: Error) -> Error {
+    match error {
+        Error::Input(mut input) if is_absent_here(Path::new(&input.place)) => {
+            let separator = if input.mend.is_empty() { "" } else { "; " };
+            input.mend += &format!("{separator}a run is resumed from the folder in which it was begun");
+            Error::Input(input)
+        }
+        other => other,
+    }
+}
+
+/// True for what may be a file's name, seen from this folder, without the file.
+fn is_absent_here(place: &Path) -> bool {
+    place.is_relative() && !place.exists() && !place.to_string_lossy().starts_with("--")
 }
 
 /// Measures what is planned and not there yet.
@@ -138,9 +183,9 @@ fn measure(arguments: &Arguments, earlier: Earlier) -> Result<ExitCode> {
         None => default_folder(&device.backend.info().name),
     };
 
-    let stop = ctrl_c()?;
-    let interrupted = || stop.load(Ordering::Relaxed);
     let mut progress = Progress::new(plan.configurations(), work, arguments.quiet);
+    let stop = ctrl_c(progress.teller())?;
+    let interrupted = || stop.load(Ordering::Relaxed);
     if earlier.settled() > 0 && !arguments.quiet {
         output::note(&format!("{} of {} rows are there already", earlier.settled(), plan.configurations()));
     }
@@ -195,14 +240,16 @@ fn default_folder(device: &str) -> PathBuf {
     Path::new("results").join(format!("{}-{}", environment::now_for_file_name(), files::slug(device)))
 }
 
-/// A flag that Ctrl-C sets. The second Ctrl-C ends the program at once: the journal is on the disk anyway.
-fn ctrl_c() -> Result<Arc<AtomicBool>> {
+/// A flag that Ctrl-C sets, and says so. The second Ctrl-C ends the program at once: the journal is on the disk anyway. The
+/// handler runs on a thread of its own, where printing is allowed.
+fn ctrl_c(tell: impl Fn(&str) + Send + 'static) -> Result<Arc<AtomicBool>> {
     let flag = Arc::new(AtomicBool::new(false));
     let set = Arc::clone(&flag);
     ctrlc::set_handler(move || {
         if set.swap(true, Ordering::Relaxed) {
             std::process::exit(130);
         }
+        tell("stopping after this frame; Ctrl-C again ends at once");
     })
     .map_err(|e| Error::Device(format!("cannot listen for Ctrl-C: {e}")))?;
     Ok(flag)

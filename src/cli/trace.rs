@@ -6,7 +6,7 @@ use super::output;
 use crate::accel::Selection;
 use crate::error::Result;
 use crate::math::MISS;
-use crate::results::rays;
+use crate::results::{files, rays};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -52,8 +52,10 @@ Examples:
 pub fn run(arguments: &Arguments) -> Result<()> {
     let selection = Selection::parse(&arguments.structure)?;
     arguments.device.check()?;
+    files::keep(&arguments.out, [arguments.rays.as_path()].into_iter())?;
     let rays = rays::read(&arguments.rays)?;
-    let scene = arguments.library.load(&arguments.scene)?;
+    let (scene, sources) = arguments.library.load_with_sources(&arguments.scene)?;
+    files::keep(&arguments.out, sources.paths())?;
     let device = arguments.device.open()?;
     device::announce(&device);
     let built = selection.build(&scene, arguments.device.threads)?;

@@ -32,6 +32,40 @@ pub fn replace(path: &Path, content: &[u8]) -> Result<()> {
     })
 }
 
+/// Refuses to write over a file that is read, by whatever name or link.
+///
+/// # Errors
+/// [`Error::Input`] that names both.
+pub fn keep<'a>(out: &Path, mut inputs: impl Iterator<Item = &'a Path>) -> Result<()> {
+    match inputs.find(|input| is_same(input, out)) {
+        None => Ok(()),
+        Some(input) => {
+            let problem = format!("it is the same file as {}, which is read", input.display());
+            Err(Error::file(out, None, problem, "write to another file"))
+        }
+    }
+}
+
+/// True for two names of one regular file. What is none, as a terminal, may well be read and written.
+fn is_same(a: &Path, b: &Path) -> bool {
+    match (fs::canonicalize(a), fs::canonicalize(b)) {
+        (Ok(a), Ok(b)) => a.is_file() && (a == b || is_linked(&a, &b)),
+        _ => false,
+    }
+}
+
+#[cfg(unix)]
+fn is_linked(a: &Path, b: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let place = |path: &Path| fs::metadata(path).map(|m| (m.dev(), m.ino())).ok();
+    place(a).is_some_and(|a| place(b) == Some(a))
+}
+
+#[cfg(not(unix))]
+fn is_linked(_: &Path, _: &Path) -> bool {
+    false
+}
+
 /// A name beside `path` that no other process uses.
 fn neighbour(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_owned();

@@ -11,6 +11,17 @@ use std::path::{Path, PathBuf};
 /// File name inside a run's folder.
 pub const FILE_NAME: &str = "journal.jsonl";
 
+/// The folder of a run that is named as such or by its journal.
+pub fn folder_of(run: &Path) -> PathBuf {
+    match run.parent() {
+        Some(folder) if run.is_file() && run.ends_with(FILE_NAME) => match folder.as_os_str().is_empty() {
+            true => PathBuf::from("."),
+            false => folder.to_owned(),
+        },
+        _ => run.to_owned(),
+    }
+}
+
 /// Appends records.
 pub struct JournalWriter {
     path: PathBuf,
@@ -126,8 +137,14 @@ impl Journal {
     /// # Errors
     /// [`Error::Input`] with file and line for anything else that is not a journal of this schema.
     pub fn read(path: &Path) -> Result<Journal> {
-        let bytes = std::fs::read(path)
-            .map_err(|e| Error::file(path, None, format!("cannot read: {e}"), "give a run's journal.jsonl"))?;
+        let bytes = std::fs::read(path).map_err(|e| {
+            Error::file(
+                path,
+                None,
+                format!("cannot read: {e}"),
+                "give the folder of a run, as `rtbench sweep` writes it",
+            )
+        })?;
         Journal::parse(path, &bytes)
     }
 

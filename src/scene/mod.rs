@@ -315,7 +315,17 @@ impl Scene {
     }
 }
 
-/// The bytes of a file.
+/// The bytes of a text file, or of one that may be text: without a byte order mark, which editors put before UTF-8 and which
+/// no format has a place for. Every reader takes its files from here, so that none sees one.
+fn read_text(path: &Path) -> Result<Vec<u8>> {
+    let mut content = read_file(path)?;
+    if content.starts_with("\u{feff}".as_bytes()) {
+        content.drain(.."\u{feff}".len());
+    }
+    Ok(content)
+}
+
+/// The bytes of a file as they are.
 fn read_file(path: &Path) -> Result<Vec<u8>> {
     let fault = |problem: String, mend| Error::file(path, None, problem, mend);
     let metadata = match std::fs::metadata(path) {

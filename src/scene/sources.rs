@@ -37,6 +37,8 @@ pub struct Source {
     pub bytes: u64,
     /// When it was modified, in nanoseconds since 1970; `None` if that would not tell it from a later state.
     pub modified: Option<u64>,
+    /// When the system noted its last change, in the same way: see [`changed`].
+    pub changed: Option<u64>,
     /// What it holds, hexadecimal; empty if only paths were asked for.
     pub hash: String,
 }
@@ -81,14 +83,22 @@ pub fn read(path: &Path, metadata: &Metadata, content: &[u8]) {
         path: whole(path),
         kind: Kind::File,
         bytes: content.len() as u64,
-        modified: modified(metadata).filter(|_| settled(metadata)),
+        modified: modified(metadata).filter(settled),
+        changed: changed(metadata).filter(settled),
         hash: if hashes { blake3::hash(content).to_hex().to_string() } else { String::new() },
     });
 }
 
 /// Notes that a file was looked for and is not there.
 pub fn absent(path: &Path) {
-    add(|_| Source { path: whole(path), kind: Kind::Absent, bytes: 0, modified: None, hash: String::new() });
+    add(|_| Source {
+        path: whole(path),
+        kind: Kind::Absent,
+        bytes: 0,
+        modified: None,
+        changed: None,
+        hash: String::new(),
+    });
 }
 
 /// Notes a folder with these files.
@@ -98,6 +108,7 @@ pub fn folder(path: &Path, files: &[PathBuf]) {
         kind: Kind::Folder,
         bytes: files.len() as u64,
         modified: None,
+        changed: None,
         hash: names_hash(files),
     });
 }
@@ -118,10 +129,24 @@ pub fn modified(metadata: &Metadata) -> Option<u64> {
     u64::try_from(since.as_nanos()).ok()
 }
 
-/// True if whatever is written into the file from now on will show in its time.
-fn settled(metadata: &Metadata) -> bool {
-    let age = metadata.modified().ok().and_then(|time| SystemTime::now().duration_since(time).ok());
-    age.is_some_and(|age| age >= STEP)
+/// When the system noted the last change of a file's content, name or permissions, in nanoseconds since 1970. The other
+/// time is set back by `touch`, `cp -p`, archives and rsync; this one by nobody. `None` on systems without it.
+#[cfg(unix)]
+pub fn changed(metadata: &Metadata) -> Option<u64> {
+    use std::os::unix::fs::MetadataExt;
+    let nanoseconds = i128::from(metadata.ctime()) * 1_000_000_000 + i128::from(metadata.ctime_nsec());
+    u64::try_from(nanoseconds).ok()
+}
+
+#[cfg(not(unix))]
+pub fn changed(_: &Metadata) -> Option<u64> {
+    None
+}
+
+/// True if whatever is done to the file from now on will show in this time of it, in nanoseconds since 1970.
+fn settled(time: &u64) -> bool {
+    let time = SystemTime::UNIX_EPOCH + Duration::from_nanos(*time);
+    SystemTime::now().duration_since(time).is_ok_and(|age| age >= STEP)
 }
 
 /// The path with its folder free of links. The file itself may be one: then it is the link that counts, since it may come

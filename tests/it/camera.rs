@@ -333,13 +333,43 @@ fn a_scene_with_a_camera_of_its_own_is_seen_through_it() {
     }
 }
 
+/// What is advised where a path has too few frames can be done: only a file of the user's own can be given more.
+#[test]
+fn more_frames_than_there_are() {
+    let scene = filmed(30);
+    let refused = |path: CameraPath| path.views(&scene, Some(401)).unwrap_err().to_string();
+    let poses = "kind = \"frames\"\nposes = [[0, 0, 0, 9, 0, 0, -1, 0, 1, 0], [1, 0, 0, 8, 0, 0, -1, 0, 1, 0]]\n";
+    let folder = tempfile::tempdir().unwrap();
+    let load = |text: &str| {
+        let file = folder.path().join("path.toml");
+        std::fs::write(&file, text).unwrap();
+        CameraPath::load(file.to_str().unwrap()).unwrap()
+    };
+    for (path, mend) in [
+        (CameraPath::for_scene(&scene, Config::P), "(take 1 to 30 frames)"),
+        (CameraPath::load("orbit").unwrap(), "(take 1 to 400 frames)"),
+        (load(poses), "(take 1 to 2 frames, or add poses to the file)"),
+        (load(WALK), "(take 1 to 10 frames, or raise `frames` in the file)"),
+    ] {
+        let message = refused(path);
+        assert!(message.ends_with(mend), "{message}");
+    }
+}
+
 #[test]
 fn an_exported_path_shows_the_same_views_to_the_bit() {
     let scene = filmed(200);
-    for path in [CameraPath::for_scene(&scene, Config::P), CameraPath::load("orbit").unwrap(), from_text(WALK).unwrap()]
-    {
+    let with_lights = format!(
+        "{WALK}[[lights]]\nposition = [0.3, 1, 0.7]\nrelative = true\n[[lights]]\nposition = [1, 2, 3]\ncolour = [0.1, 0, 1]\n"
+    );
+    for path in [
+        CameraPath::for_scene(&scene, Config::P),
+        CameraPath::load("orbit").unwrap(),
+        from_text(WALK).unwrap(),
+        from_text(&with_lights).unwrap(),
+    ] {
         let recorded = path.poses(&scene, None).unwrap();
-        let again = from_text(&to_toml(&recorded, "\"quoted\"\nlines")).unwrap();
+        let again = from_text(&to_toml(&recorded, &path.lights(&scene), "\"quoted\"\nlines")).unwrap();
         assert_eq!(again.description, "\"quoted\"\nlines");
         assert_eq!(again.poses(&scene, None).unwrap(), recorded);
         assert_eq!(again.views(&scene, None).unwrap(), path.views(&scene, None).unwrap(), "{}", path.name);

@@ -244,6 +244,7 @@ fn ctrl_c_in_the_middle() {
     let text = stderr(&output);
     assert_eq!(output.status.code(), Some(130), "{text}");
     assert!(text.contains("rtbench: error: interrupted") && !text.contains("panicked"), "{text}");
+    assert_eq!(text.matches("rtbench: stopping after this frame; Ctrl-C again ends at once\n").count(), 1, "{text}");
     let journal = Journal::read(&journal).unwrap();
     assert_eq!(journal.configurations.len(), 1);
     assert!(journal.end.as_ref().unwrap().interrupted);
@@ -270,6 +271,8 @@ fn a_sweep_is_resumed_by_the_flags_it_began_with() {
     let whole = std::fs::read_to_string(&journal).unwrap();
     let resume = format!("sweep --resume {out_name}");
     assert!(stderr(&run(&resume)).contains("nothing is left to measure"));
+    assert_eq!(stderr(&run(&format!("{resume}/{FILE_NAME}"))), stderr(&run(&resume)));
+    assert_eq!(stderr(&run(&format!("{resume} -q"))), "");
     assert_eq!(std::fs::read_to_string(&journal).unwrap(), whole);
 
     // Killed in the middle of its third row
@@ -279,6 +282,12 @@ fn a_sweep_is_resumed_by_the_flags_it_began_with() {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert!(stderr(&output).contains("2 of 4 rows are there already"), "{}", stderr(&output));
     let resumed = Journal::read(&journal).unwrap();
+    // Without a word, and by the journal's name
+    let by_journal = tempfile::tempdir().unwrap();
+    std::fs::write(by_journal.path().join(FILE_NAME), &whole[..third + 40]).unwrap();
+    let output = command(&format!("sweep --quiet --resume {FILE_NAME}")).current_dir(&by_journal).output().unwrap();
+    assert_eq!((output.status.code(), stderr(&output), stdout(&output)), (Some(0), String::new(), String::new()));
+    assert!(by_journal.path().join("summary.csv").is_file());
     assert_eq!((resumed.configurations.len(), resumed.structures.len(), resumed.resumed.len()), (4, 2, 1));
     assert_eq!(resumed.resumed[0].arguments[1..], ["sweep".to_owned(), "--resume".to_owned(), out_name.to_string()]);
     assert!(resumed.configurations.iter().all(|row| row.status == Status::Ok));
@@ -290,10 +299,101 @@ fn a_sweep_is_resumed_by_the_flags_it_began_with() {
     std::fs::write(&journal, &whole[..third + 40]).unwrap();
     std::fs::write(&scene, ply.replace("0 0 1\n", "0 0 2\n")).unwrap();
     one_error(&run(&resume), &["journal.jsonl", "pyramid is not the scene that it was", "begin a new run"]);
-    one_error(&run(&format!("{resume} --frames 3")), &["--resume", "cannot be used with"]);
-    one_error(&run(&format!("sweep --resume {}", folder.path().display())), &["journal.jsonl", "cannot read"]);
+    one_error(&run(&format!("{resume} --frames 3")), &["--resume", "cannot be used with", "--frames"]);
+    one_error(
+        &run(&format!("sweep --resume {}", folder.path().display())),
+        &["journal.jsonl", "cannot read", "the folder of a run"],
+    );
     std::fs::write(&journal, whole[..third].replacen("\"sweep\"", "\"swoop\"", 1)).unwrap();
     one_error(&run(&resume), &["journal.jsonl:1:", "does not know"]);
+}
+
+/// With every flag of the beginning, as `--help` lists them, and the error names it.
+#[test]
+fn a_resumed_run_takes_no_other_flags() {
+    let help = good("sweep --help");
+    let flags: Vec<&str> = help.lines().map(str::trim).filter(|line| line.starts_with("--")).collect();
+    assert!(flags.len() > 15, "{help}");
+    for line in flags {
+        let (flag, value) = line.split_once(' ').unwrap_or((line, ""));
+        let value = match flag {
+            "--resume" => continue,
+            "--backend" => "cpu",
+            _ if value.is_empty() => "",
+            _ => "1",
+        };
+        one_error(&run(&format!("sweep --resume nosuch {flag} {value}")), &["--resume", "cannot be used with", flag]);
+    }
+    one_error(&run("sweep --resume nosuch -q"), &["nosuch/journal.jsonl", "give the folder of a run"]);
+}
+
+#[test]
+fn a_run_of_relative_names_is_resumed_where_it_was_begun() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("n.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\n").unwrap();
+    let here = |arguments: &str| command(arguments).current_dir(&folder).output().unwrap();
+    let begun =
+        here("sweep --backend cpu --scene n.obj --frames 1 --resolution 8 --config P --structure bvh,grid --out k");
+    assert_eq!(begun.status.code(), Some(0), "{}", stderr(&begun));
+    let journal = folder.path().join("k").join(FILE_NAME);
+    let whole = std::fs::read_to_string(&journal).unwrap();
+    let second = whole.match_indices("\"record\":\"configuration\"").nth(1).unwrap().0;
+    std::fs::write(&journal, &whole[..second + 40]).unwrap();
+    let elsewhere = format!("sweep --resume {}", folder.path().join("k").display());
+    one_error(&run(&elsewhere), &["n.obj: no such file", "is resumed from the folder in which it was begun"]);
+    assert_eq!(here("sweep --resume k").status.code(), Some(0));
+}
+
+#[test]
+fn what_is_read_is_not_written_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    let rays = "origin_x,origin_y,origin_z,direction_x,direction_y,direction_z\n0,0,5,0,0,-1\n";
+    let mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\n";
+    let files = [("a.csv", rays), ("m.obj", mesh), ("p.toml", "kind = \"orbit\"\n")];
+    for (name, text) in files {
+        std::fs::write(at(name), text).unwrap();
+    }
+    std::fs::create_dir(at("sub")).unwrap();
+    good(&format!("scenes convert {} {}", at("m.obj"), at("m.rtb")));
+    let mut outs = vec![at("a.csv"), at("sub/../a.csv")];
+    if cfg!(unix) {
+        for kind in ["-s", "-P"] {
+            let link = at(&format!("link{kind}.csv"));
+            assert!(Command::new("ln").args([kind, &at("a.csv"), &link]).status().unwrap().success());
+            outs.push(link);
+        }
+    }
+    for out in outs {
+        let trace = format!("trace --scene {} --backend cpu --rays {} -o {out}", at("m.obj"), at("a.csv"));
+        one_error(&run(&trace), &["is the same file as", "a.csv", "write to another file"]);
+    }
+    let scene = at("m.obj");
+    one_error(&run(&format!("trace --scene {scene} --backend cpu --rays {} -o {scene}", at("a.csv"))), &["m.obj"]);
+    one_error(&run(&format!("scenes convert {0}:scale=2 {0}", at("m.rtb"))), &["m.rtb", "same file"]);
+    one_error(&run(&format!("camera-path export {scene} -o {scene}")), &["m.obj", "same file"]);
+    let path = at("p.toml");
+    one_error(&run(&format!("camera-path export {scene} --camera-path {path} -o {path}")), &["p.toml", "same file"]);
+    for (name, text) in files {
+        assert_eq!(std::fs::read_to_string(at(name)).unwrap(), text, "{name}");
+    }
+}
+
+#[test]
+fn a_moving_light_is_not_exported_without_a_word() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["lo.toml", "lo.csv"] {
+        let out = folder.path().join(name);
+        let export = format!("camera-path export scan:triangles=1000 --camera-path light-orbit -o {}", out.display());
+        one_error(&run(&export), &["light-orbit", "its light moves", "--camera-path light-orbit"]);
+        assert!(!out.exists());
+    }
+}
+
+#[test]
+fn an_empty_folder_of_scenes_is_none() {
+    let output = command("scenes info bunny").env("RTBENCH_SCENES", "").output().unwrap();
+    one_error(&output, &["no folder of scenes is given", "RTBENCH_SCENES"]);
 }
 
 #[test]
@@ -450,7 +550,10 @@ fn lists_and_help() {
         assert!(good("scenes list").lines().any(|line| line.trim() == name), "{name}");
     }
     let text = good("scenes info scan:triangles=1000");
-    assert!(text.contains("content hash") && text.contains("kdtree, estimated"), "{text}");
+    assert!(
+        text.contains("content hash") && text.contains("kdtree, estimated") && text.contains("within a factor of 2"),
+        "{text}"
+    );
     assert!(good("devices").contains("--backend cpu"));
     assert!(good("completions bash").contains("rtbench"));
     assert!(good("--version").contains("revision"));

@@ -12,6 +12,7 @@ mod fetch;
 mod gltf;
 mod inventor;
 mod inventor_faces;
+mod mark;
 mod memory;
 mod mgf;
 mod mutation;
@@ -24,7 +25,7 @@ use std::path::PathBuf;
 
 /// The folder of real scenes, or a line on stderr that says that and why the test did not run.
 fn real_scenes(test: &str) -> Option<PathBuf> {
-    let folder = std::env::var_os("RTBENCH_SCENES").map(PathBuf::from);
+    let folder = std::env::var_os("RTBENCH_SCENES").filter(|folder| !folder.is_empty()).map(PathBuf::from);
     if folder.is_none() {
         eprintln!("{test}: did not run, RTBENCH_SCENES does not name a folder of scenes");
     }

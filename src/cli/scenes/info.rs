@@ -2,7 +2,7 @@
 
 use super::super::library::LibraryArguments;
 use super::super::output;
-use crate::accel::estimate;
+use crate::accel::{Selection, estimate};
 use crate::backend::Config;
 use crate::camera::CameraPath;
 use crate::error::Result;
@@ -45,11 +45,17 @@ pub fn run(what: &str, library: &LibraryArguments) -> Result<()> {
         line("licence", entry.licence.clone());
         line("credit", entry.credit.clone());
     }
-    for estimate in estimate::estimates(&scene) {
+    let options = entry.and_then(|entry| entry.grid.as_deref()).map_or(String::new(), |grid| format!(":{grid}"));
+    let grid = Selection::parse(&format!("grid{options}"))?.grid_config().unwrap_or_default();
+    for estimate in estimate::estimates(&scene, &grid)? {
         let mib = |bytes: u64| format!("{:.2} MiB", bytes as f64 / f64::from(1 << 20));
-        let (device, thesis) = (mib(estimate.structure_bytes), mib(estimate.thesis_bytes));
-        let name = format!("{}, estimated", estimate.structure);
-        line(&name, format!("{device} beside the vertices; {thesis} as the thesis counts"));
+        let (device, thesis, factor) = (mib(estimate.structure_bytes), mib(estimate.thesis_bytes), estimate.factor);
+        let options = if estimate.structure == "grid" { options.as_str() } else { "" };
+        let name = format!("{}{options}, estimated", estimate.structure);
+        line(
+            &name,
+            format!("{device} beside the vertices; {thesis} as the thesis counts; within a factor of {factor}"),
+        );
     }
     line("content hash", scene.content_hash());
     for warning in &scene.warnings {

@@ -7,6 +7,7 @@ mod list;
 use super::library::LibraryArguments;
 use super::output;
 use crate::error::{Error, Result};
+use crate::results::files;
 use crate::scene::cache;
 use clap::Subcommand;
 use std::path::PathBuf;
@@ -77,6 +78,7 @@ fn convert(what: &str, out: &std::path::Path, library: &LibraryArguments) -> Res
         return Err(Error::argument(out.display().to_string(), problem, "formats are told by the file's extension"));
     }
     let (scene, sources) = library.load_with_sources(what)?;
+    files::keep(out, sources.paths())?;
     cache::write(&scene, &sources, out)?;
     let (triangles, vertices) = (scene.triangles.len(), scene.vertices.len());
     output::print(&format!("{}: {}, {triangles} triangles, {vertices} vertices\n", out.display(), scene.name))

@@ -6,7 +6,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 /// Version of the layout.
-pub const FORMAT: u32 = 3;
+pub const FORMAT: u32 = 4;
 
 /// What a cache begins with.
 pub const MAGIC: [u8; 8] = *b"RTBSCENE";

@@ -49,6 +49,13 @@ struct Texts {
 #[derive(Clone, Debug, Default)]
 pub struct Sources(Vec<Source>);
 
+impl Sources {
+    /// The files, and names where none was found.
+    pub fn paths(&self) -> impl Iterator<Item = &Path> {
+        self.0.iter().map(|source| source.path.as_path())
+    }
+}
+
 /// Loads a scene as [`load_in`] does, and notes what it is made from.
 ///
 /// # Errors
@@ -243,6 +250,7 @@ pub fn read(path: &Path, _: &Options) -> Result<Scene> {
         kind: Kind::Cache,
         bytes: metadata.len(),
         modified: None,
+        changed: None,
         hash: stale::hexadecimal(&header),
     });
     Ok(scene)

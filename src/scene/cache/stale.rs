@@ -18,6 +18,7 @@ pub struct Stored {
     kind: Kind,
     bytes: u64,
     modified: Option<u64>,
+    changed: Option<u64>,
     hash: String,
 }
 
@@ -27,8 +28,9 @@ pub fn store(sources: &[Source], cache: &Path) -> Vec<Stored> {
     let cache = sources::whole(cache);
     let folder = cache.parent().unwrap_or(Path::new(""));
     let stored = |source: &Source| {
-        let (kind, bytes, modified, hash) = (source.kind, source.bytes, source.modified, source.hash.clone());
-        Some(Stored { path: relative(folder, &source.path)?, kind, bytes, modified, hash })
+        let Source { kind, bytes, modified, changed, .. } = *source;
+        let path = relative(folder, &source.path)?;
+        Some(Stored { path, kind, bytes, modified, changed, hash: source.hash.clone() })
     };
     sources.iter().filter(|source| source.path != cache).filter_map(stored).collect()
 }
@@ -50,7 +52,7 @@ fn relative(folder: &Path, file: &Path) -> Option<String> {
 /// The sources of a cache in `folder`; `None` if one of them does not lie where [`store`] would have found it.
 pub fn restore(stored: Vec<Stored>, folder: &Path) -> Option<Vec<Source>> {
     let restored = |stored: Stored| {
-        let Stored { path, kind, bytes, modified, hash } = stored;
+        let Stored { path, kind, bytes, modified, changed, hash } = stored;
         let way = Path::new(&path);
         let allowed = |part| matches!(part, Component::Normal(_) | Component::ParentDir | Component::CurDir);
         if path.is_empty() || !way.components().all(allowed) {
@@ -64,7 +66,7 @@ pub fn restore(stored: Vec<Stored>, folder: &Path) -> Option<Vec<Source>> {
                 _ => {}
             }
         }
-        Some(Source { path: place, kind, bytes, modified, hash })
+        Some(Source { path: place, kind, bytes, modified, changed, hash })
     };
     stored.into_iter().map(restored).collect()
 }
@@ -86,15 +88,17 @@ pub fn changed(sources: &[Source]) -> Option<(&Path, &'static str)> {
     sources.iter().find_map(|source| Some((source.path.as_path(), fate(source)?)))
 }
 
-/// A file of the same length and time is taken for the same; one of another time is hashed, since copies and checkouts
-/// change the time alone.
+/// A file of the same length and times is taken for the same; one of another time is hashed: copies and checkouts change
+/// the time of modification alone, renaming and other permissions the system's alone.
 fn is_same_file(source: &Source) -> bool {
     let Ok(metadata) = std::fs::metadata(&source.path) else { return false };
     if !metadata.is_file() || metadata.len() != source.bytes {
         return false;
     }
-    (source.modified.is_some() && source.modified == sources::modified(&metadata))
-        || hash(&source.path).is_some_and(|hash| hash == source.hash)
+    let untouched = source.modified.is_some()
+        && source.modified == sources::modified(&metadata)
+        && source.changed == sources::changed(&metadata);
+    untouched || hash(&source.path).is_some_and(|hash| hash == source.hash)
 }
 
 fn is_same_folder(source: &Source) -> bool {

@@ -34,7 +34,7 @@ type Fault = (String, &'static str);
 /// # Errors
 /// [`Error::Input`] for whatever is wrong with one of them.
 pub fn read(path: &Path, options: &Options) -> Result<Scene> {
-    read_bytes(path, &super::read_file(path)?, options)
+    read_bytes(path, &super::read_text(path)?, options)
 }
 
 /// Reads a file that is already in memory; `path` is where buffers are looked for.

@@ -4,7 +4,7 @@ use super::lines::{Lines, printable, without_comment};
 use super::{Fault, NAMES, Named, Reader, mtl};
 use crate::error::{Error, Result};
 use crate::scene::text::Home;
-use crate::scene::{Material, read_file, sources};
+use crate::scene::{Material, read_text, sources};
 use glam::Vec3;
 use std::collections::BTreeSet;
 use std::path::{Component, Path};
@@ -143,7 +143,7 @@ impl Reader<'_> {
         if !self.libraries.insert(path.canonicalize().unwrap_or_else(|_| path.clone())) {
             return Ok(());
         }
-        let bytes = read_file(&path)?;
+        let bytes = read_text(&path)?;
         self.faces.read(bytes.len());
         let library = mtl::parse(&bytes).map_err(|fault| fault.of(&path))?;
         self.textures |= library.textures;

@@ -57,7 +57,7 @@ impl Fault {
 /// # Errors
 /// [`Error::Input`] for whatever is wrong with one of them; a library that is not there is a warning.
 pub fn read(path: &Path, options: &Options) -> Result<Scene> {
-    read_bytes(path, &super::read_file(path)?, options)
+    read_bytes(path, &super::read_text(path)?, options)
 }
 
 /// Reads a file that is already in memory; `path` is where libraries are looked for.

@@ -26,7 +26,7 @@ use std::path::Path;
 /// # Errors
 /// [`crate::Error::Input`] for whatever is wrong with the file.
 pub fn read(path: &Path) -> Result<Scene> {
-    let bytes = super::read_file(path)?;
+    let bytes = super::read_text(path)?;
     let body = parse(&bytes).map_err(|fault| fault.of(path))?;
     // The file's bytes are no longer needed: less memory for what follows.
     drop(bytes);

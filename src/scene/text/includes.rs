@@ -41,7 +41,7 @@ impl Includes {
     /// # Errors
     /// The file cannot be read.
     pub fn new(path: &Path, outside: bool) -> Result<(Includes, Rc<Vec<u8>>)> {
-        let bytes = Rc::new(crate::scene::read_file(path)?);
+        let bytes = Rc::new(crate::scene::read_text(path)?);
         let includes = Includes {
             first: (path.to_owned(), Rc::clone(&bytes)),
             root: PathBuf::new(),
@@ -108,7 +108,7 @@ impl Includes {
         let bytes = match self.files.get(&whole) {
             Some(bytes) => Rc::clone(bytes),
             None => {
-                let bytes = match crate::scene::read_file(&whole) {
+                let bytes = match crate::scene::read_text(&whole) {
                     Ok(bytes) => Rc::new(bytes),
                     Err(error) => return fault(&error.to_string(), String::new()),
                 };

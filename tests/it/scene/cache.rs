@@ -154,6 +154,36 @@ fn a_changed_source_makes_it_stale() {
     load(&path).unwrap();
 }
 
+/// `touch -d`, `cp -p`, archives and rsync bring a file's time back, but not that of its last change.
+#[cfg(unix)]
+#[test]
+fn an_edit_whose_time_was_set_back_makes_it_stale() {
+    use std::os::unix::fs::PermissionsExt;
+    let files = super::Files::new(&[("cube.ply", super::ply::CUBE)]);
+    let (source, cached) = (files.path("cube.ply"), files.path("cube.rtb"));
+    let past = std::time::SystemTime::now() - std::time::Duration::from_secs(1000);
+    let set_back = || std::fs::File::options().append(true).open(&source).unwrap().set_modified(past).unwrap();
+    set_back();
+    // Younger than the clock's step, the time of change would be left out of the cache: it is to be in it
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    convert(text(&source), &cached);
+    load(&cached).unwrap();
+    // Other permissions and another name for a while: the same content
+    std::fs::set_permissions(&source, std::fs::Permissions::from_mode(0o600)).unwrap();
+    load(&cached).unwrap();
+    std::fs::rename(&source, files.path("away")).unwrap();
+    std::fs::rename(files.path("away"), &source).unwrap();
+    load(&cached).unwrap();
+    files.write("cube.ply", super::ply::CUBE.replace("extras", "extraz").as_bytes());
+    set_back();
+    assert!(refusal(load(&cached)).contains("cube.ply has changed"));
+    // At once after it was written as well: that time may be that of a later edit
+    convert(text(&source), &cached);
+    files.write("cube.ply", super::ply::CUBE.as_bytes());
+    set_back();
+    assert!(refusal(load(&cached)).contains("cube.ply has changed"));
+}
+
 #[test]
 fn every_file_that_was_read_counts() {
     let files = super::Files::new(&[

@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 use rtbench::accel::grid::Grid;
-use rtbench::accel::{estimate, grid_build};
+use rtbench::accel::{Selection, estimate, grid_build};
 use rtbench::math::Vertex;
-use rtbench::scene::{Material, Scene, Triangle};
+use rtbench::scene::{Material, Scene, Triangle, load_in};
 
 /// A square of so many cells along each edge, as high as it says.
 fn field(cells: u32, height: f32) -> Scene {
@@ -30,9 +30,45 @@ fn field(cells: u32, height: f32) -> Scene {
 fn the_grid_is_estimated_with_the_builders_limits() {
     for (cells, height) in [(100, 100.0), (100, 1.0), (100, 0.01), (20, 0.0)] {
         let scene = field(cells, height);
-        let grid: Grid = grid_build::build(&scene, &grid_build::Config::default()).unwrap();
+        let config = grid_build::Config::default();
+        let grid: Grid = grid_build::build(&scene, &config).unwrap();
         let built = (size_of_val(grid.cells.as_slice()) + size_of_val(grid.records.as_slice())) as f64;
-        let estimated = estimate::estimates(&scene)[0].structure_bytes as f64;
-        assert!((0.5..2.0).contains(&(estimated / built)), "height {height}: {estimated} estimated, {built} built");
+        let estimate = estimate::estimates(&scene, &config).unwrap()[0];
+        let off = estimate.structure_bytes as f64 / built;
+        assert!((1.0 / estimate.factor..estimate.factor).contains(&off), "height {height}: {off} of {built}");
+    }
+}
+
+/// What is printed beside the estimates is true of real scenes.
+#[test]
+fn estimates_are_as_close_as_they_say() {
+    let Some(folder) = super::real_scenes("estimates_are_as_close_as_they_say") else { return };
+    let scenes = [("bunny", ""), ("museum", ""), ("robots", ":x=128"), ("sponza", ""), ("dragon", "")];
+    for (name, options) in scenes {
+        let scene = match load_in(name, Some(&folder)) {
+            Ok(scene) => scene,
+            Err(error) => {
+                eprintln!("{name} was left out: {error}");
+                continue;
+            }
+        };
+        let grid = Selection::parse(&format!("grid{options}")).unwrap();
+        let estimates = estimate::estimates(&scene, &grid.grid_config().unwrap()).unwrap();
+        let mut thesis = Vec::new();
+        for estimate in estimates {
+            let options = if estimate.structure == "grid" { options } else { "" };
+            let selection = Selection::parse(&format!("{}{options}", estimate.structure)).unwrap();
+            let built = selection.build(&scene, 0).unwrap().structure;
+            let close = 1.0 / estimate.factor..estimate.factor;
+            for (estimated, real) in [
+                (estimate.structure_bytes, built.structure_bytes()),
+                (estimate.thesis_bytes, built.thesis_bytes(&scene)),
+            ] {
+                let off = estimated as f64 / real as f64;
+                assert!(close.contains(&off), "{name}, {}: {estimated} estimated, {real} built", estimate.structure);
+            }
+            thesis.push(estimate.thesis_bytes);
+        }
+        assert!(name != "dragon" || thesis[1] < thesis[0], "the dragon's kd-tree is smaller than its grid: {thesis:?}");
     }
 }

@@ -26,7 +26,7 @@ fn counted(
     config: Config,
     choose: impl FnOnce(&CameraPath, &Scene) -> Vec<View>,
 ) -> Option<[CounterSums; 3]> {
-    let Some(folder) = std::env::var_os("RTBENCH_SCENES") else {
+    let Some(folder) = std::env::var_os("RTBENCH_SCENES").filter(|folder| !folder.is_empty()) else {
         eprintln!("NOT RUN: set RTBENCH_SCENES to the folder that holds {scene}");
         return None;
     };
