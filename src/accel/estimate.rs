@@ -34,11 +34,11 @@ const FAR: f64 = 2.0;
 
 /// Estimates for kd-tree and BVH with their default options, and for the grid with these.
 ///
-/// # Errors
-/// [`crate::Error::Input`] if the grid cannot be built so.
-///
 /// The grid's cells follow from the builder's own rule and limits. A box with edges e in cells of edge s overlaps on average
 /// `(1 + ex / s) (1 + ey / s) (1 + ez / s)` of them, wherever it lies; the sum of that is the estimate of its records.
+///
+/// # Errors
+/// [`crate::Error::Input`] if the grid cannot be built so.
 pub fn estimates(scene: &Scene, config: &grid_build::Config) -> Result<[Estimate; 3]> {
     let triangles = scene.triangles.len() as f64;
     let vertices = 32.0 * scene.vertices.len() as f64;
