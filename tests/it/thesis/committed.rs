@@ -2,13 +2,14 @@
 
 use rtbench::results::journal::Journal;
 use rtbench::results::record::Status;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_rtbench");
 
 /// The run that the README shows.
-const SHOWN: &str = "results/lavapipe-2core-2026-11-22";
+const SHOWN: &str = "results/lavapipe-2core-2026-11-28";
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -33,6 +34,25 @@ fn every_row_is_verified() {
             let name = format!("{} {} {} {:?}", run.display(), record.scene.name, record.structure, record.config);
             assert!(record.verified && record.status == Status::Ok, "{name}");
         }
+    }
+}
+
+/// A reader that makes another scene of the same file leaves a run behind that nobody can repeat.
+#[test]
+fn their_scenes_are_what_is_read_today() {
+    let Some(folder) = std::env::var_os("RTBENCH_SCENES") else {
+        eprintln!("NOT RUN: set RTBENCH_SCENES to the folder of scenes");
+        return;
+    };
+    let mut scenes: BTreeMap<String, String> = BTreeMap::new();
+    for run in committed() {
+        let journal = Journal::read(&run.join("journal.jsonl")).unwrap();
+        scenes.extend(journal.structures.into_iter().map(|s| (s.scene.name, s.scene.hash)));
+    }
+    assert!(scenes.len() >= 9, "{scenes:?}");
+    for (name, hash) in scenes {
+        let scene = rtbench::scene::load_in(&name, Some(Path::new(&folder))).unwrap();
+        assert_eq!(scene.content_hash(), hash, "{name} has changed: record the committed runs again");
     }
 }
 
