@@ -2,11 +2,12 @@
 
 use crate::fakes::{Fault, Faulty};
 use rtbench::accel::{Selection, Traversal};
-use rtbench::backend::{Config, Size};
+use rtbench::backend::{Backend, Config, Size};
 use rtbench::bench::batch::order;
 use rtbench::bench::plan::{Plan, Request, check_size, parse_list, parse_size};
 use rtbench::bench::resume::Earlier;
 use rtbench::bench::sweep::{self, Event, Job, Opened, Outcome};
+use rtbench::cpu::CpuBackend;
 use rtbench::results::journal::{FILE_NAME, Journal};
 use rtbench::results::record::{ConfigurationRecord, Failure, Status};
 use rtbench::{Error, Result};
@@ -216,6 +217,19 @@ fn structures_take_turns_pass_by_pass() {
     assert_eq!(*timed.borrow(), expected);
     let journal = Journal::read(&folder.path().join(FILE_NAME)).unwrap();
     assert!(journal.configurations.iter().all(|row| row.turns == 2), "{:?}", rows(&journal));
+}
+
+/// `rtbench build`, which brings nothing to a device, gives the sizes that a sweep gives.
+#[test]
+fn sizes_are_the_same_without_a_device() {
+    let scene = rtbench::scene::load("hall:triangles=15000").unwrap();
+    let cpu = CpuBackend::new(1).unwrap();
+    for structure in ["grid", "kdtree", "bvh-stack"] {
+        let selection = Selection::parse(structure).unwrap();
+        let built = selection.build(&scene, 1).unwrap();
+        let allocated = cpu.prepare(&scene, &built.structure, selection.method()).unwrap().allocated();
+        assert_eq!(sweep::memory(&built, &scene, None), sweep::memory(&built, &scene, Some(allocated)), "{structure}");
+    }
 }
 
 #[test]
