@@ -50,7 +50,7 @@ fn main() {
 
 /// The largest file of each format that its reader takes: fixtures may be broken.
 fn files() -> BTreeMap<String, PathBuf> {
-    let Some(folder) = std::env::var_os("RTBENCH_SCENES").filter(|folder| !folder.is_empty()).map(PathBuf::from) else {
+    let Some(folder) = common::scenes_folder() else {
         eprintln!("nothing to measure: RTBENCH_SCENES is not set");
         return BTreeMap::new();
     };

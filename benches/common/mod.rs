@@ -16,11 +16,14 @@ pub fn measuring() -> bool {
     std::env::args().any(|arg| arg == "--bench")
 }
 
+/// The folder with the real scenes; an empty variable is as good as none.
+pub fn scenes_folder() -> Option<std::path::PathBuf> {
+    std::env::var_os("RTBENCH_SCENES").filter(|folder| !folder.is_empty()).map(std::path::PathBuf::from)
+}
+
 /// The real models, if the environment says where they are: `(name, scene)`.
 pub fn models() -> Vec<(&'static str, Scene)> {
-    let Some(folder) =
-        std::env::var_os("RTBENCH_SCENES").filter(|folder| !folder.is_empty()).map(std::path::PathBuf::from)
-    else {
+    let Some(folder) = scenes_folder() else {
         eprintln!("bunny and dragon are left out: RTBENCH_SCENES is not set");
         return Vec::new();
     };

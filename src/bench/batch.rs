@@ -117,13 +117,12 @@ impl Sweep<'_, '_> {
                     }
                     there.push(None);
                 }
-                Err(error @ Error::DeviceLost(_)) => {
-                    if let Some(place) = member.waiting.pop_front() {
-                        self.unable(subject, selection, Some(&member.candidate), place, &error.to_string())?;
-                    }
+                Err(error) => {
+                    // There is one, or it would not have been brought
+                    let Some(&place) = member.waiting.front() else { return Err(error) };
+                    self.failed(subject, member, place, error)?;
                     return Ok(None);
                 }
-                Err(other) => return Err(other),
             }
         }
         Ok(Some(there))

@@ -340,10 +340,7 @@ impl Sweep<'_, '_> {
 
 /// Sizes: as allocated on the device (geometry, structure) where it was, otherwise as the CPU twins hold it.
 pub fn memory(built: &Built, scene: &Scene, allocated: Option<(u64, u64)>) -> Memory {
-    let geometry = size_of_val(&scene.vertices[..])
-        + size_of_val(&scene.materials[..])
-        + scene.triangles.len() * size_of::<u32>()
-        + size_of_val(&scene.lights[..]);
-    let (geometry_bytes, structure_bytes) = allocated.unwrap_or((geometry as u64, built.structure.structure_bytes()));
+    let held = || (scene.geometry_bytes(), built.structure.structure_bytes());
+    let (geometry_bytes, structure_bytes) = allocated.unwrap_or_else(held);
     Memory { structure_bytes, geometry_bytes, thesis_bytes: built.structure.thesis_bytes(scene) }
 }

@@ -6,12 +6,12 @@ use super::trace::trace_group;
 use super::traverse::bvh_stack::STACK_SIZE;
 use super::traverse::{GROUP, Traverse, Triangles, brute, bvh, bvh_stack, grid, grid_coop, grid_packet, kdtree};
 use crate::accel::method::{Group, MAX_SHORT_STACK};
-use crate::accel::{Method, Record, Structure, Traversal};
+use crate::accel::{Method, Structure, Traversal};
 use crate::backend::*;
 use crate::camera::View;
 use crate::error::{Error, Result};
 use crate::math::Hit;
-use crate::scene::{Light, Material, Scene};
+use crate::scene::Scene;
 use crate::threads;
 use bytemuck::Zeroable;
 use rayon::prelude::*;
@@ -257,17 +257,6 @@ impl<T: Traverse> Prepared for CpuPrepared<'_, T> {
     }
 
     fn allocated(&self) -> (u64, u64) {
-        let bytes = |n: usize, each: usize| (n * each) as u64;
-        let geometry = bytes(self.scene.vertices.len(), size_of::<crate::math::Vertex>())
-            + bytes(self.scene.materials.len(), size_of::<Material>())
-            + bytes(self.scene.triangles.len(), size_of::<u32>())
-            + bytes(self.scene.lights.len(), size_of::<Light>());
-        let nodes = match self.structure {
-            Structure::Brute(_) => 0,
-            Structure::Grid(g) => std::mem::size_of_val(g.cells.as_slice()) as u64,
-            Structure::KdTree(k) => std::mem::size_of_val(k.nodes.as_slice()) as u64,
-            Structure::Bvh(b) => std::mem::size_of_val(b.nodes.as_slice()) as u64,
-        };
-        (geometry, nodes + bytes(self.triangles.records.len(), size_of::<Record>()))
+        (self.scene.geometry_bytes(), self.structure.structure_bytes())
     }
 }

@@ -280,13 +280,16 @@ impl Run {
             }
         }
         // Rows of a structure stand together, though it took turns with others
-        let key = |c: &ConfigurationRecord| (c.scene.name.clone(), c.structure.clone(), c.variant.clone());
+        fn key(c: &ConfigurationRecord) -> [&str; 4] {
+            [&c.scene.name, &c.scene.hash, &c.structure, &c.variant]
+        }
         let mut first: HashMap<_, usize> = HashMap::new();
         for (place, record) in journal.configurations.iter().enumerate() {
             first.entry(key(record)).or_insert(place);
         }
         let mut records: Vec<&ConfigurationRecord> = journal.configurations.iter().collect();
-        records.sort_by_key(|record| (scenes.iter().position(|s| *s == record.scene), first[&key(record)]));
+        // Scenes are measured one after another, so this keeps theirs together as well
+        records.sort_by_key(|record| first[&key(record)]);
         Run {
             run: journal.provenance.clone(),
             scenes,

@@ -245,6 +245,13 @@ impl Scene {
         None
     }
 
+    /// Bytes of vertices, materials, every triangle's material and lights, as the twins hold them. (Triangle records belong to
+    /// structures.)
+    pub fn geometry_bytes(&self) -> u64 {
+        let materials = size_of_val(self.materials.as_slice()) + self.triangles.len() * size_of::<u32>();
+        (size_of_val(self.vertices.as_slice()) + materials + size_of_val(self.lights.as_slice())) as u64
+    }
+
     /// BLAKE3 of all that decides what is traced and shaded, hexadecimal: vertices, triangles, materials, lights and
     /// background, each with its number. Equal on all machines with the same byte order.
     pub fn content_hash(&self) -> String {

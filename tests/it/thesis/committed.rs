@@ -40,7 +40,7 @@ fn every_row_is_verified() {
 /// A reader that makes another scene of the same file leaves a run behind that nobody can repeat.
 #[test]
 fn their_scenes_are_what_is_read_today() {
-    let Some(folder) = std::env::var_os("RTBENCH_SCENES") else {
+    let Some(folder) = std::env::var_os("RTBENCH_SCENES").filter(|folder| !folder.is_empty()) else {
         eprintln!("NOT RUN: set RTBENCH_SCENES to the folder of scenes");
         return;
     };
