@@ -31,9 +31,9 @@ struct Frame {
     first_column: u32,
     columns: u32,         // columns of this band
     height: u32,          // of the image
+    shadow_reach: f32,    // how far from a point shadow rays from a light start at most
     pad0: u32,
     pad1: u32,
-    pad2: u32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -98,6 +98,14 @@ fn seen_through(column: u32, row: u32) -> vec2<f32> {
     return vec2<f32>(f32(column) + 0.5, f32(row) + 0.5);
 }
 
+// The light, or the point towards it at the greatest distance at which a shadow ray starts: nothing lies beyond, and rays
+// that start at a distant light could not tell the point from its neighbours.
+fn shadow_start(light: vec3<f32>, point: vec3<f32>) -> vec3<f32> {
+    let way = light - point;
+    let distance = sqrt(dot3(way, way));
+    return select(light, point + way * (frame.shadow_reach / distance), distance > frame.shadow_reach);
+}
+
 @compute @workgroup_size(GROUP_SIZE)
 fn main(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -153,12 +161,12 @@ fn main(
             let light = lights[frame.first_light + i];
             var lit = alive;
             if (SHADOWS) {
-                // Between light and point, of which one lies at distance 0 and the other at distance 1
+                // Between light and point, of which one is at distance 0 and the other at distance 1
                 if (alive) {
                     count_ray(SHADOW);
                 }
                 let position = light.position.xyz;
-                let start = select(position, surface.point, TO_LIGHT);
+                let start = select(shadow_start(position, surface.point), surface.point, TO_LIGHT);
                 let end = select(surface.point, position, TO_LIGHT);
                 let shadow = ray_along(start, end - start);
                 lit = !any_hit(shadow, 1.0, alive) && alive;

@@ -46,7 +46,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         let record = nearest_hit(ray, alive);
         if (record != MISS) {
             let r = read_record(record);
-            let found = intersect(ray, read_position(r.x), read_position(r.y), read_position(r.z));
+            let found = surface_hit(ray, read_position(r.x), read_position(r.y), read_position(r.z));
             hit = GivenHit(found.t, r.w);
         }
     }

@@ -75,6 +75,12 @@ pub fn surface_epsilon(bounds: Aabb) -> f32 {
     bounds.diagonal() * 1.0e-5
 }
 
+/// How far from a point a shadow ray from a light starts at most, in scene units: four diagonals. Nothing lies beyond, and
+/// rays that start at a distant light could not tell the point from its neighbours.
+pub fn shadow_reach(bounds: Aabb) -> f32 {
+    bounds.diagonal() * 4.0
+}
+
 /// Width and height of an image in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Size {

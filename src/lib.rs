@@ -6,7 +6,8 @@
 //! |---|---|
 //! | [`error`] | the one error that reaches a user: file, line, problem, mend |
 //! | [`threads`] | pools of threads to measure with |
-//! | [`math`] | boxes, rays, triangles and the two tests; the twin of `kernels/lib/geom.wgsl` |
+//! | [`math`] | boxes, rays, and the ray/box test; the twin of `kernels/lib/geom.wgsl` |
+//! | [`intersect`] | ray/triangle tests |
 //! | [`scene`] | mesh, materials, lights; one file per format; procedural scenes |
 //! | [`config`] | ray configurations P, PS and PSR |
 //! | [`camera`] | cameras, camera paths and their files |
@@ -30,6 +31,7 @@ pub mod cpu;
 pub mod error;
 pub mod fetch;
 pub mod gpu;
+pub mod intersect;
 pub mod math;
 pub mod results;
 pub mod scene;

@@ -1,14 +1,21 @@
-//! Boxes, rays, triangles, and the two tests: ray/box and ray/triangle.
+//! Boxes, rays, and the ray/box test. The ray/triangle tests are in [`crate::intersect`].
 //!
 //! This is the twin of `kernels/lib/geom.wgsl`, operation for operation: on a device that neither contracts nor
 //! approximates (lavapipe), both give the same bits.
 //!
-//! **Why all traversals agree.** Both tests compute a distance along an axis as `(plane - origin) * inverse direction`.
+//! **Why all traversals agree.** All tests compute a distance along an axis as `(plane - origin) * inverse direction`.
 //! Subtraction and multiplication round monotonically, so a box inside another box has a computed interval inside the
-//! other's computed interval, without any epsilon. [`intersect`] makes a triangle's distance part of that order: a hit
-//! counts only where the ray passes the triangle's own box by that same test, and its distance is clamped into the
+//! other's computed interval, without any epsilon. The ray/triangle tests make a triangle's distance part of that order:
+//! a hit counts only where the ray passes the triangle's own box by that same test, and its distance is clamped into the
 //! box's interval. So no enclosing node, cell or leaf can be culled by rounding while the triangle inside it is hit,
 //! and every structure finds exactly the hits of brute force.
+//!
+//! **Directions with a component of zero.** On such an axis distances to planes are `difference * 2^80`: far beyond
+//! every hit, or zero for a plane that the ray lies in. Zero would cut the interval at the ray's start, on one of the
+//! two sides of the plane. So lower planes are compared with an origin that is shifted up a little, and upper planes
+//! with one that is shifted down ([`Ray::origin_min`], [`Ray::origin_max`]): a box that contains the origin on that
+//! axis, its borders included, spans -2^50 to 2^50 at least. The shift is the same for all planes, so the order of
+//! distances is kept.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec3, Vec3A, Vec4};
@@ -19,11 +26,19 @@ pub const MISS: u32 = u32::MAX;
 /// Farther than any hit. Not infinity: WGSL lets an implementation assume that there is none.
 pub const T_MAX: f32 = 3.0e38;
 
-/// Stands for `1 / 0`: a direction component of zero is treated as this small a slope (see [`inverse`]).
-pub const INVERSE_OF_ZERO: f32 = 1.0e30;
+/// Stands for `1 / 0`, see [`inverse`]: 2^80. Coordinates up to 1e13 times this are still floats.
+pub const INVERSE_OF_ZERO: f32 = (1_u128 << 80) as f32;
 
-/// Determinants below this are parallel or degenerate; keeps the division finite.
-pub const DETERMINANT_MIN: f32 = 1.0e-30;
+/// Added to both ends of a triangle's interval on an axis on which the direction is zero: 2^49, farther than any hit.
+/// The planes of boxes are moved by [`PLANE_SHIFT_MIN`] there, which is more.
+pub const SLACK: f32 = (1_u64 << 49) as f32;
+
+/// On an axis on which the direction is zero, a plane within this share of the origin's coordinate counts as one that
+/// the ray lies in: 2^-20. It is above the rounding of coordinates, so that the shifted origin always differs.
+pub const PLANE_SHIFT: f32 = 1.0 / (1 << 20) as f32;
+
+/// Smallest such shift: 2^-30. Times [`INVERSE_OF_ZERO`] it is 2^50, twice [`SLACK`].
+pub const PLANE_SHIFT_MIN: f32 = 1.0 / (1 << 30) as f32;
 
 /// An axis-aligned box. Empty when `min > max` on any axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,14 +107,51 @@ pub struct Ray {
     pub direction: Vec3A,
     /// `1 / direction` per component, see [`inverse`].
     pub inv_direction: Vec3A,
+    /// `origin`, but slightly higher on axes on which the direction is zero: the lower planes of boxes are compared
+    /// with it, so that a box whose lower plane the ray lies in contains it.
+    pub origin_min: Vec3A,
+    /// `origin`, but slightly lower on axes on which the direction is zero: for the upper planes of boxes.
+    pub origin_max: Vec3A,
+    /// Powers of two near the direction's components, see [`crate::intersect::watertight`].
+    pub scale: Vec3A,
+    /// `scale`, but zero on axes on which the direction is zero.
+    pub shear: Vec3A,
+    /// [`SLACK`] on axes on which the direction is zero, and zero on the others.
+    pub slack: Vec3A,
+    /// The axis of the largest direction component, the first of equals.
+    pub major: usize,
 }
 
 impl Ray {
     /// A ray from `origin` along `direction`.
     #[inline]
     pub fn new(origin: Vec3A, direction: Vec3A) -> Ray {
-        let one = |v: Vec3A| Vec3A::from_vec4(Vec4::new(v.x, v.y, v.z, 1.0));
-        Ray { origin: one(origin), direction, inv_direction: one(inverse(direction)) }
+        let with_lane = |v: Vec3A| Vec3A::from_vec4(Vec4::new(v.x, v.y, v.z, 1.0));
+        let inv = inverse(direction);
+        let parallel = inv.cmpeq(Vec3A::splat(INVERSE_OF_ZERO));
+        let shift = (origin.abs() * PLANE_SHIFT).max(Vec3A::splat(PLANE_SHIFT_MIN));
+        let shift = Vec3A::select(parallel, shift, Vec3A::ZERO);
+        let scale = inv.to_array().map(power_below);
+        let scale = Vec3A::from_array(scale);
+        let steep = inv.abs();
+        let major = if steep.x <= steep.y && steep.x <= steep.z {
+            0
+        } else if steep.y <= steep.z {
+            1
+        } else {
+            2
+        };
+        Ray {
+            origin: with_lane(origin),
+            direction,
+            inv_direction: with_lane(inv),
+            origin_min: with_lane(origin + shift),
+            origin_max: with_lane(origin - shift),
+            scale,
+            shear: Vec3A::select(parallel, Vec3A::ZERO, scale),
+            slack: Vec3A::select(parallel, Vec3A::splat(SLACK), Vec3A::ZERO),
+            major,
+        }
     }
 
     /// The point at distance `t`.
@@ -109,12 +161,18 @@ impl Ray {
     }
 }
 
-/// `1 / direction` per component. A component so small that the quotient would leave the range of floats counts as
-/// positive and has the inverse [`INVERSE_OF_ZERO`].
+/// `1 / direction` per component. A component so small that the quotient would reach [`INVERSE_OF_ZERO`] counts as zero
+/// and has that as its inverse.
 #[inline]
 pub fn inverse(direction: Vec3A) -> Vec3A {
-    let one = |d: f32| if d.abs() < 1.0 / INVERSE_OF_ZERO { INVERSE_OF_ZERO } else { 1.0 / d };
+    let one = |d: f32| if d.abs() <= 1.0 / INVERSE_OF_ZERO { INVERSE_OF_ZERO } else { 1.0 / d };
     Vec3A::new(one(direction.x), one(direction.y), one(direction.z))
+}
+
+/// The reciprocal of the largest power of two that is not above `|x|`, for a normal `x`.
+#[inline]
+fn power_below(x: f32) -> f32 {
+    f32::from_bits(0x7f00_0000_u32.wrapping_sub(x.to_bits() & 0x7f80_0000))
 }
 
 /// A found hit.
@@ -134,57 +192,13 @@ impl Hit {
 /// The interval of distances inside the box: `(near, far)`, empty when `near > far`.
 ///
 /// Slab test with min and max only, after Smits; the interval is not clamped to the ray's start.
+///
+/// An origin exactly in a plane that the ray runs along is inside, at both sides of the box.
 #[inline(always)]
 pub fn ray_box(ray: &Ray, min: Vec3A, max: Vec3A) -> (f32, f32) {
-    let a = (min - ray.origin) * ray.inv_direction;
-    let b = (max - ray.origin) * ray.inv_direction;
+    let a = (min - ray.origin_min) * ray.inv_direction;
+    let b = (max - ray.origin_max) * ray.inv_direction;
     (a.min(b).max_element(), a.max(b).min_element())
-}
-
-/// A triangle that was hit: distance and barycentric coordinates (of the second and the third corner).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TriangleHit {
-    /// Distance, `0 < t <= t_max`.
-    pub t: f32,
-    /// Weight of the second corner.
-    pub u: f32,
-    /// Weight of the third corner.
-    pub v: f32,
-}
-
-/// Ray/triangle test after Möller and Trumbore, two-sided, division only for hits; `Some` where `0 < t <= t_max`.
-///
-/// What makes it order-consistent with [`ray_box`] is described at the head of this module.
-// Comparisons are written so that NaN, which degenerate input may bring, fails them.
-#[inline(always)]
-pub fn intersect(ray: &Ray, v0: Vec3A, v1: Vec3A, v2: Vec3A, t_max: f32) -> Option<TriangleHit> {
-    let e1 = v1 - v0;
-    let e2 = v2 - v0;
-    let p = ray.direction.cross(e2);
-    let signed_det = e1.dot(p);
-    let sign = if signed_det < 0.0 { -1.0 } else { 1.0 };
-    let det = signed_det * sign;
-    if !(det >= DETERMINANT_MIN) {
-        return None;
-    }
-    let s = ray.origin - v0;
-    let u = s.dot(p) * sign;
-    if !(u >= 0.0 && u <= det) {
-        return None;
-    }
-    let q = s.cross(e1);
-    let v = ray.direction.dot(q) * sign;
-    if !(v >= 0.0 && u + v <= det) {
-        return None;
-    }
-    // Only the clamped distance is compared: whether a hit counts must not depend on the order of the tests.
-    let t = e2.dot(q) * sign / det;
-    let (near, far) = ray_box(ray, v0.min(v1).min(v2), v0.max(v1).max(v2));
-    let t = t.max(near).min(far);
-    if near > far || !(t > 0.0 && t <= t_max) {
-        return None;
-    }
-    Some(TriangleHit { t, u: u / det, v: v / det })
 }
 
 /// A vertex as the device sees it: 32 bytes, two vec4 (SPEC section 1).

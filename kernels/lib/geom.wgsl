@@ -1,8 +1,9 @@
-// Rays, boxes, triangles and the two tests. Twin: src/math.rs, operation for operation.
+// Rays, boxes, and the ray/box test. Twin: src/math.rs, operation for operation.
 //
 // Distances to planes are (plane - origin) * inverse direction everywhere. Both operations round monotonically, so
 // a box inside a box has its computed interval inside the other's, and a triangle's distance is clamped into its own
-// box's interval: nothing that encloses a hit triangle can be culled by rounding. See src/math.rs.
+// box's interval: nothing that encloses a hit triangle can be culled by rounding. See src/math.rs, which also says how
+// directions with a component of zero are treated.
 //
 // dot and cross are spelled out so that the order of additions is ours and not the compiler's.
 
@@ -10,6 +11,12 @@ struct Ray {
     origin: vec3<f32>,
     direction: vec3<f32>,
     inv_direction: vec3<f32>,
+    origin_min: vec3<f32>, // slightly above the origin where the direction is zero: for lower planes of boxes
+    origin_max: vec3<f32>, // slightly below it there: for upper planes
+    scale: vec3<f32>,      // powers of two near the direction's components
+    shear: vec3<f32>,      // scale, but zero where the direction is zero
+    slack: vec3<f32>,      // SLACK where the direction is zero, zero elsewhere
+    major: u32,            // axis of the largest direction component
 }
 
 // A triangle that was hit; `t` is NO_HIT if it was not.
@@ -29,27 +36,50 @@ fn cross3(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
     return vec3<f32>(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
 
+fn on_axis(p: vec3<f32>, axis: u32) -> f32 {
+    return select(select(p.z, p.y, axis == 1u), p.x, axis == 0u);
+}
+
 fn unit(v: vec3<f32>) -> vec3<f32> {
     return v / sqrt(dot3(v, v));
 }
 
 fn inverse1(d: f32) -> f32 {
-    if (abs(d) < 1.0 / INVERSE_OF_ZERO) {
+    if (abs(d) <= 1.0 / INVERSE_OF_ZERO) {
         return INVERSE_OF_ZERO;
     }
     return 1.0 / d;
 }
 
+// The reciprocal of the largest power of two that is not above |x|, by component.
+fn power_below(x: vec3<f32>) -> vec3<f32> {
+    return bitcast<vec3<f32>>(vec3<u32>(0x7f000000u) - (bitcast<vec3<u32>>(x) & vec3<u32>(0x7f800000u)));
+}
+
 fn ray_along(origin: vec3<f32>, direction: vec3<f32>) -> Ray {
     let inv = vec3<f32>(inverse1(direction.x), inverse1(direction.y), inverse1(direction.z));
-    return Ray(origin, direction, inv);
+    let zero = vec3<f32>(0.0, 0.0, 0.0);
+    let parallel = inv == vec3<f32>(INVERSE_OF_ZERO);
+    let shift = select(zero, max(abs(origin) * PLANE_SHIFT, vec3<f32>(PLANE_SHIFT_MIN)), parallel);
+    let scale = power_below(inv);
+    let steep = abs(inv);
+    var major = 2u;
+    if (steep.x <= steep.y && steep.x <= steep.z) {
+        major = 0u;
+    } else if (steep.y <= steep.z) {
+        major = 1u;
+    }
+    return Ray(
+        origin, direction, inv, origin + shift, origin - shift, scale, select(scale, zero, parallel),
+        select(zero, vec3<f32>(SLACK), parallel), major
+    );
 }
 
 // The interval of distances inside the box, (near, far), empty when near > far. Slab test with min and max only
-// (after Smits); not clamped to the ray's start.
+// (after Smits); not clamped to the ray's start. An origin exactly in a plane that the ray runs along is inside.
 fn ray_box(ray: Ray, lo: vec3<f32>, hi: vec3<f32>) -> vec2<f32> {
-    let a = (lo - ray.origin) * ray.inv_direction;
-    let b = (hi - ray.origin) * ray.inv_direction;
+    let a = (lo - ray.origin_min) * ray.inv_direction;
+    let b = (hi - ray.origin_max) * ray.inv_direction;
     if (SOFTWARE) {
         // The same without min and max, which cost a software driver three instructions each (one of them for NaN,
         // of which there is none here) where a comparison serves two selections
@@ -65,25 +95,5 @@ fn ray_box(ray: Ray, lo: vec3<f32>, hi: vec3<f32>) -> vec2<f32> {
     return vec2<f32>(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
 }
 
-// Möller and Trumbore's test, two-sided, with one division and only for hits.
-fn intersect(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> TriangleHit {
-    var hit = TriangleHit(NO_HIT, 0.0, 0.0);
-    let e1 = v1 - v0;
-    let e2 = v2 - v0;
-    let p = cross3(ray.direction, e2);
-    let signed_det = dot3(e1, p);
-    let sign = select(1.0, -1.0, signed_det < 0.0);
-    let det = signed_det * sign;
-    let s = ray.origin - v0;
-    let u = dot3(s, p) * sign;
-    let q = cross3(s, e1);
-    let v = dot3(ray.direction, q) * sign;
-    if (det >= DETERMINANT_MIN && u >= 0.0 && u <= det && v >= 0.0 && u + v <= det) {
-        let interval = ray_box(ray, min(min(v0, v1), v2), max(max(v0, v1), v2));
-        let t = min(max(dot3(e2, q) * sign / det, interval.x), interval.y);
-        if (interval.x <= interval.y && t > 0.0) {
-            hit = TriangleHit(t, u / det, v / det);
-        }
-    }
-    return hit;
-}
+// intersect(ray, v0, v1, v2), and surface_hit of a triangle that intersect has hit
+//!slot intersect

@@ -12,9 +12,10 @@ struct Walk {
     inside: bool,
 }
 
-fn border_distance(ray: Ray, index: vec3<i32>) -> vec3<f32> {
-    let plane = structure.bounds_min + vec3<f32>(index) * structure.cell_size;
-    return (plane - ray.origin) * ray.inv_direction;
+// Distance of the plane below cell `index` of an axis.
+fn border_distance(ray: Ray, axis: u32, index: i32) -> f32 {
+    let plane = on_axis(structure.bounds_min, axis) + f32(index) * structure.cell_size;
+    return (plane - on_axis(ray.origin, axis)) * on_axis(ray.inv_direction, axis);
 }
 
 fn start_walk(ray: Ray, limit: f32) -> Walk {
@@ -27,17 +28,47 @@ fn start_walk(ray: Ray, limit: f32) -> Walk {
     walk.step = octant.step.xyz;
     walk.end = octant.end.xyz;
     walk.ahead = select(vec3<i32>(1, 1, 1), vec3<i32>(0, 0, 0), negative);
+    if (!walk.inside) {
+        return walk;
+    }
 
-    // Find the first cell; rounding may put it one too far along the ray, which would skip the one before
+    // Guess the first cell by the ray's position, and find it by the distances of borders
     let last = vec3<f32>(structure.resolution) - 1.0;
-    let place = floor((ray.origin + ray.direction * t_start - structure.bounds_min) / structure.cell_size);
-    walk.cell = vec3<i32>(min(max(place, vec3<f32>(0.0, 0.0, 0.0)), last));
-    let behind = border_distance(ray, walk.cell + 1 - walk.ahead);
-    let back = walk.cell - walk.step;
-    let possible = back >= vec3<i32>(0, 0, 0) & back < vec3<i32>(structure.resolution);
-    walk.cell = select(walk.cell, back, behind > vec3<f32>(t_start, t_start, t_start) & possible);
-    walk.t_next = border_distance(ray, walk.cell + walk.ahead);
+    let guess = floor((ray.origin + ray.direction * t_start - structure.bounds_min) / structure.cell_size);
+    let cell = vec3<i32>(min(max(guess, vec3<f32>(0.0, 0.0, 0.0)), last));
+    for (var axis = 0u; axis < 3u; axis += 1u) {
+        walk.cell[axis] = first_cell(ray, axis, t_start, cell[axis], walk);
+        walk.t_next[axis] = border_distance(ray, axis, walk.cell[axis] + walk.ahead[axis]);
+        if (ray.slack[axis] > 0.0) {
+            walk.t_next[axis] = T_MAX;
+        }
+    }
     return walk;
+}
+
+// On one axis, the first cell that the ray touches at `t_start`. Where the direction is zero, the ray stays in the cell
+// whose lower plane is the last at or below it, which holds the triangles on both sides of that plane.
+fn first_cell(ray: Ray, axis: u32, t_start: f32, guess: i32, walk: Walk) -> i32 {
+    let parallel = ray.slack[axis] > 0.0;
+    let step = walk.step[axis];
+    let last = walk.end[axis] - step;
+    let first = i32(structure.resolution[axis]) - 1 - last;
+    var cell = guess;
+    while (cell != last) {
+        let t = border_distance(ray, axis, cell + walk.ahead[axis]);
+        if (!select(t < t_start, t <= 0.0, parallel)) {
+            break;
+        }
+        cell += step;
+    }
+    while (cell != first) {
+        let t = border_distance(ray, axis, cell + 1 - walk.ahead[axis]);
+        if (!select(t >= t_start, t > 0.0, parallel)) {
+            break;
+        }
+        cell -= step;
+    }
+    return cell;
 }
 
 // A cell's first record, and how many it has.
@@ -46,16 +77,59 @@ fn read_cell(cell: vec3<i32>) -> vec2<u32> {
     return read_pair(c.x + structure.resolution.x * (c.y + structure.resolution.y * c.z));
 }
 
-// Go to the neighbour behind the nearest border; false if that leaves the grid.
-fn advance(ray: Ray, walk: ptr<function, Walk>) -> bool {
+// Go to the neighbour behind the nearest border; false if that leaves the grid. Where several borders are at that distance,
+// the ray touches all cells between them: those before the last one are tested here.
+fn advance(ray: Ray, walk: ptr<function, Walk>, best: ptr<function, Best>) -> bool {
     let t = (*walk).t_next;
-    var axis = vec3<i32>(0, 0, 1);
+    var axis = 2u;
     if (t.x <= t.y && t.x <= t.z) {
-        axis = vec3<i32>(1, 0, 0);
+        axis = 0u;
     } else if (t.y <= t.z) {
-        axis = vec3<i32>(0, 1, 0);
+        axis = 1u;
     }
-    (*walk).cell += axis * (*walk).step;
-    (*walk).t_next = select(t, border_distance(ray, (*walk).cell + (*walk).ahead), axis == vec3<i32>(1, 1, 1));
-    return all((*walk).cell != (*walk).end);
+    let chosen = vec3<bool>(axis == 0u, axis == 1u, axis == 2u);
+    let cell = select((*walk).cell, (*walk).cell + (*walk).step, chosen);
+    let ahead = cell + (*walk).ahead;
+    let index = select(select(ahead.z, ahead.y, axis == 1u), ahead.x, axis == 0u);
+    let t_next = select(t, vec3<f32>(border_distance(ray, axis, index)), chosen);
+    let t_border = on_axis(t, axis);
+    if (min(min(t_next.x, t_next.y), t_next.z) <= t_border) {
+        return cross_borders(ray, walk, t_border, best);
+    }
+    (*walk).cell = cell;
+    (*walk).t_next = t_next;
+    return all(cell != (*walk).end);
+}
+
+// Crosses all borders at distance `t`. From far away, that may be those of many cells.
+fn cross_borders(ray: Ray, walk: ptr<function, Walk>, t: f32, best: ptr<function, Best>) -> bool {
+    let first = (*walk).cell;
+    var last = first;
+    var leaves = false;
+    for (var axis = 0u; axis < 3u; axis += 1u) {
+        while ((*walk).t_next[axis] <= t && last[axis] + (*walk).step[axis] != (*walk).end[axis]) {
+            last[axis] += (*walk).step[axis];
+            (*walk).t_next[axis] = border_distance(ray, axis, last[axis] + (*walk).ahead[axis]);
+        }
+        leaves = leaves || (*walk).t_next[axis] <= t;
+    }
+    let low = min(first, last);
+    let high = max(first, last);
+    for (var z = low.z; z <= high.z; z += 1) {
+        for (var y = low.y; y <= high.y; y += 1) {
+            for (var x = low.x; x <= high.x; x += 1) {
+                let place = vec3<i32>(x, y, z);
+                if (any(place != first) && (any(place != last) || leaves)) {
+                    count_inner();
+                    let cell = read_cell(place);
+                    for (var i = cell.x; i < cell.x + cell.y; i += 1u) {
+                        count_test();
+                        test_record(ray, i, best);
+                    }
+                }
+            }
+        }
+    }
+    (*walk).cell = last;
+    return !leaves;
 }

@@ -21,7 +21,7 @@ fn surface_at(ray: Ray, record: u32, epsilon: f32) -> Surface {
     let a = read_vertex(r.x);
     let b = read_vertex(r.y);
     let c = read_vertex(r.z);
-    let hit = intersect(ray, a.position.xyz, b.position.xyz, c.position.xyz);
+    let hit = surface_hit(ray, a.position.xyz, b.position.xyz, c.position.xyz);
     let w = 1.0 - hit.u - hit.v;
     var geometric = unit(cross3(b.position.xyz - a.position.xyz, c.position.xyz - a.position.xyz));
     geometric = geometric * select(1.0, -1.0, dot3(geometric, ray.direction) > 0.0);

@@ -23,7 +23,7 @@ fn nearest_hit(ray: Ray, alive: bool) -> u32 {
         // A hit ends the search only inside this cell: in front of a farther one something nearer may lie. At the very
         // border the next cell may hold a triangle at the same distance with a lower index.
         let t_exit = min(min(walk.t_next.x, walk.t_next.y), walk.t_next.z);
-        if (best.t < t_exit || !advance(ray, &walk)) {
+        if (best.t < t_exit || !advance(ray, &walk, &best)) {
             break;
         }
     }
@@ -31,6 +31,7 @@ fn nearest_hit(ray: Ray, alive: bool) -> u32 {
 }
 
 fn any_hit(ray: Ray, limit: f32, alive: bool) -> bool {
+    var best = no_best(); // of cells that are tested while borders are crossed
     if (!alive) {
         return false;
     }
@@ -48,8 +49,11 @@ fn any_hit(ray: Ray, limit: f32, alive: bool) -> bool {
             }
         }
         let t_exit = min(min(walk.t_next.x, walk.t_next.y), walk.t_next.z);
-        if (t_exit > limit || !advance(ray, &walk)) {
-            return false;
+        if (t_exit > limit || !advance(ray, &walk, &best)) {
+            return best.t < limit;
+        }
+        if (best.t < limit) {
+            return true;
         }
     }
     return false;

@@ -100,7 +100,7 @@ fn find(ray: Ray, limit: f32, anything: bool, alive: bool) -> Found {
             first_record[lane] = cell.x;
             tests = cell.y;
             if (tests == 0u) {
-                searching = go_on(ray, limit, anything, best.t, &walk);
+                searching = go_on(ray, limit, anything, &best, &walk);
             }
         }
         count_tests(tests);
@@ -129,22 +129,27 @@ fn find(ray: Ray, limit: f32, anything: bool, alive: bool) -> Found {
             workgroupBarrier();
         }
         if (searching) {
-            searching = go_on(ray, limit, anything, best.t, &walk);
+            searching = go_on(ray, limit, anything, &best, &walk);
         }
     }
     return best;
 }
 
 // Leaves a cell; false at the end of the search.
-fn go_on(ray: Ray, limit: f32, anything: bool, best: f32, walk: ptr<function, Walk>) -> bool {
+fn go_on(ray: Ray, limit: f32, anything: bool, best: ptr<function, Found>, walk: ptr<function, Walk>) -> bool {
     let t_exit = min(min((*walk).t_next.x, (*walk).t_next.y), (*walk).t_next.z);
-    if (anything && (best < limit || t_exit > limit)) {
+    if (anything && ((*best).t < limit || t_exit > limit)) {
         return false;
     }
-    if (!anything && best < t_exit) {
+    if (!anything && (*best).t < t_exit) {
         return false;
     }
-    return advance(ray, walk);
+    var own = Best(min((*best).t, T_MAX), (*best).record);
+    let inside = advance(ray, walk, &own);
+    if (own.record != (*best).record) {
+        *best = Found(own.t, read_record(own.record).w, own.record);
+    }
+    return inside;
 }
 
 fn nearest_hit(ray: Ray, alive: bool) -> u32 {

@@ -20,6 +20,8 @@ struct Turned {
     origin: vec3<f32>,
     direction: vec3<f32>,
     inv_direction: vec3<f32>,
+    origin_min: vec3<f32>,
+    origin_max: vec3<f32>,
     grid_min: vec3<f32>,
     last: vec3<i32>, // cell of the highest index
 }
@@ -34,7 +36,8 @@ fn turn(v: vec3<f32>, main: u32) -> vec3<f32> {
 fn turned(ray: Ray, main: u32) -> Turned {
     let last = vec3<i32>(turn(vec3<f32>(structure.resolution) - 1.0, main));
     return Turned(
-        turn(ray.origin, main), turn(ray.direction, main), turn(ray.inv_direction, main), turn(structure.bounds_min, main), last
+        turn(ray.origin, main), turn(ray.direction, main), turn(ray.inv_direction, main), turn(ray.origin_min, main),
+        turn(ray.origin_max, main), turn(structure.bounds_min, main), last
     );
 }
 
@@ -50,11 +53,20 @@ fn course_of(ray: Ray) -> u32 {
     return select(2u, 5u, ray.inv_direction.z < 0.0);
 }
 
-// Distances at which the ray is in the slab of cell `index`.
+fn border(ray: Turned, axis: u32, index: i32, origin: f32) -> f32 {
+    return (ray.grid_min[axis] + f32(index) * structure.cell_size - origin) * ray.inv_direction[axis];
+}
+
+// Distances at which the ray is in the slab of cell `index`. A ray in the plane between two slabs is in both.
 fn slab(ray: Turned, axis: u32, index: i32) -> vec2<f32> {
-    let a = (ray.grid_min[axis] + f32(index) * structure.cell_size - ray.origin[axis]) * ray.inv_direction[axis];
-    let b = (ray.grid_min[axis] + f32(index + 1) * structure.cell_size - ray.origin[axis]) * ray.inv_direction[axis];
+    let a = border(ray, axis, index, ray.origin_min[axis]);
+    let b = border(ray, axis, index + 1, ray.origin_max[axis]);
     return vec2<f32>(min(a, b), max(a, b));
+}
+
+// Distance at which the ray leaves the slice; it is behind a ray in the upper plane, which is in the next slice as well.
+fn leave_slice(ray: Turned, index: i32) -> f32 {
+    return max(border(ray, 0u, index, ray.origin.x), border(ray, 0u, index + 1, ray.origin_min.x));
 }
 
 fn guess(ray: Turned, axis: u32, t: f32) -> i32 {
@@ -190,8 +202,9 @@ fn march(given: Ray, limit: f32, anything: bool, alive: bool) -> Best {
         }
 
         // Who runs with the packet is done with a hit before the slice's end; others may find a nearer one later
-        let behind = with_packet && inside.y > interval.y;
-        let found = select(with_packet && best.t < inside.y, best.t < limit, anything);
+        let leave = leave_slice(ray, slice);
+        let behind = with_packet && leave > interval.y;
+        let found = select(with_packet && best.t < leave, best.t < limit, anything);
         searching = searching && !behind && !found;
         if (!group_any(searching)) {
             break;

@@ -1,6 +1,8 @@
 //! How rays go through a built structure: the traversal, and all else that a kernel is specialised by beside the ray
 //! configuration. Kernels and their twins take the same [`Method`].
 
+use crate::intersect::TriangleTest;
+
 /// How a structure is walked; each is one file in `kernels/traverse/` and its twin in [`crate::cpu`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Traversal {
@@ -136,6 +138,8 @@ pub struct Method {
     pub shadows: ShadowRays,
     /// Primary rays.
     pub pattern: Pattern,
+    /// Ray/triangle test.
+    pub intersect: TriangleTest,
     /// A work-group's pixels.
     pub group: Group,
     /// The image is split into so many tiles on each side, which are rendered one after another.
@@ -146,13 +150,15 @@ pub struct Method {
     pub fetch: Fetch,
 }
 
-/// What of a method decides which rays there are: methods that agree in it make the same image.
+/// What of a method decides which rays there are and what they hit: methods that agree in it make the same image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Rays {
     /// Primary rays.
     pub pattern: Pattern,
     /// Shadow rays.
     pub shadows: ShadowRays,
+    /// Ray/triangle test.
+    pub intersect: TriangleTest,
     /// A work-group's pixels, where the pattern depends on it.
     pub group: Option<Group>,
 }
@@ -161,7 +167,7 @@ impl Method {
     /// Which rays it traces.
     pub fn rays(self) -> Rays {
         let group = (self.pattern == Pattern::Four).then_some(self.group);
-        Rays { pattern: self.pattern, shadows: self.shadows, group }
+        Rays { pattern: self.pattern, shadows: self.shadows, intersect: self.intersect, group }
     }
 }
 
@@ -172,6 +178,7 @@ impl From<Traversal> for Method {
             traversal,
             shadows: ShadowRays::default(),
             pattern: Pattern::default(),
+            intersect: TriangleTest::default(),
             group: Group::SQUARE,
             tiles: 1,
             checked: false,

@@ -189,6 +189,12 @@ pub const COMMON_OPTIONS: &[OptionInfo] = &[
         kind: Kind::Word(&["image", "four"]),
     },
     OptionInfo {
+        key: "intersect",
+        default: "watertight",
+        meaning: "ray/triangle test: watertight, or the one of Möller and Trumbore, which loses rays at edges",
+        kind: Kind::Word(&["watertight", "moller-trumbore"]),
+    },
+    OptionInfo {
         key: "checks",
         default: "off",
         meaning: "compile the kernel with bounds checks and loop bounds",

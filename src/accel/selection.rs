@@ -4,6 +4,7 @@ use super::Structure;
 use super::method::{Fetch, Group, Method, Pattern, ShadowRays};
 use super::registry::{OptionInfo, VariantInfo, variants};
 use crate::error::{Error, Result};
+use crate::intersect::TriangleTest;
 use crate::scene::Scene;
 use crate::threads;
 use std::time::Instant;
@@ -91,6 +92,10 @@ impl Selection {
                 _ => ShadowRays::FromLight,
             },
             pattern: if self.value("pattern") == "four" { Pattern::Four } else { Pattern::Image },
+            intersect: match self.value("intersect") {
+                "moller-trumbore" => TriangleTest::MollerTrumbore,
+                _ => TriangleTest::Watertight,
+            },
             group: Group { width: side(width), height: side(height) },
             tiles: self.count("tiles").unwrap_or(1),
             checked: self.value("checks") == "on",

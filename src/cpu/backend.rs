@@ -1,7 +1,7 @@
 //! The twins as a device: [`Backend`] and [`Prepared`] over a pool of threads.
 
 use super::count::{Count, CountOff};
-use super::render::Frame;
+use super::render::{Frame, Lengths};
 use super::trace::trace_group;
 use super::traverse::bvh_stack::STACK_SIZE;
 use super::traverse::{GROUP, Traverse, Triangles, brute, bvh, bvh_stack, grid, grid_coop, grid_packet, kdtree};
@@ -69,7 +69,7 @@ impl Backend for CpuBackend {
         structure: &'a Structure,
         method: Method,
     ) -> Result<Box<dyn Prepared + 'a>> {
-        let triangles = |records| Triangles { vertices: &scene.vertices, records };
+        let triangles = |records| Triangles { vertices: &scene.vertices, records, test: method.intersect };
         let check_depth = |depth: u32| match (depth as usize) + 1 < STACK_SIZE {
             true => Ok(()),
             false => {
@@ -131,9 +131,9 @@ impl CpuBackend {
         method: Method,
         traversal: T,
     ) -> Box<dyn Prepared + 'a> {
-        let epsilon = surface_epsilon(scene.bounds());
+        let lengths = Lengths::new(scene.bounds());
         let (pool, timed) = (&self.pool, Vec::new());
-        Box::new(CpuPrepared { pool, scene, structure, triangles, method, traversal, epsilon, timed })
+        Box::new(CpuPrepared { pool, scene, structure, triangles, method, traversal, lengths, timed })
     }
 }
 
@@ -144,7 +144,7 @@ struct CpuPrepared<'a, T> {
     triangles: Triangles<'a>,
     method: Method,
     traversal: T,
-    epsilon: f32,
+    lengths: Lengths,
     /// The timed image, kept between frames like a device's buffer.
     timed: Vec<Pixel>,
 }
@@ -176,7 +176,7 @@ impl<'a, T: Traverse> CpuPrepared<'a, T> {
     where
         'a: 'f,
     {
-        Frame::new(self.scene, self.triangles, self.method, (config, view, size), self.epsilon)
+        Frame::new(self.scene, self.triangles, self.method, (config, view, size), self.lengths)
     }
 
     /// A whole frame, tile by tile.

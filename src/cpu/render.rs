@@ -6,9 +6,9 @@ use super::shade::{Surface, phong, reflected_ray, rgba8, surface_at, unit};
 use super::traverse::{GROUP, Lanes, Traverse, Triangles, bits};
 use crate::accel::Method;
 use crate::accel::method::{Group, Pattern, ShadowRays};
-use crate::backend::{Config, CountedPixel, GivenRay, Pixel, Size};
+use crate::backend::{Config, CountedPixel, GivenRay, Pixel, Size, shadow_reach, surface_epsilon};
 use crate::camera::{PixelGrid, View};
-use crate::math::{MISS, Ray, T_MAX};
+use crate::math::{Aabb, MISS, Ray, T_MAX};
 use crate::scene::{Light, Scene};
 use glam::Vec3A;
 
@@ -33,7 +33,23 @@ pub struct Frame<'a> {
     method: Method,
     grid: PixelGrid,
     lights: &'a [Light],
-    epsilon: f32,
+    lengths: Lengths,
+}
+
+/// Lengths that secondary rays depend on, in scene units.
+#[derive(Clone, Copy, Debug)]
+pub struct Lengths {
+    /// How far off a surface they start, see [`surface_epsilon`].
+    pub epsilon: f32,
+    /// How far from a point shadow rays from a light start at most, see [`shadow_reach`].
+    pub reach: f32,
+}
+
+impl Lengths {
+    /// Those of a scene with these bounds.
+    pub fn new(bounds: Aabb) -> Lengths {
+        Lengths { epsilon: surface_epsilon(bounds), reach: shadow_reach(bounds) }
+    }
 }
 
 /// The primary ray of a pixel (rows from the top), exactly as a frame casts it.
@@ -59,27 +75,37 @@ fn direction_through(grid: &PixelGrid, [x, y]: [f32; 2]) -> Vec3A {
     unit(Vec3A::from(grid.corner) + Vec3A::from(grid.right) * x + Vec3A::from(grid.down) * y)
 }
 
-/// Between light and point, of which one lies at distance 0 and the other at distance 1.
-fn shadow_ray(direction: ShadowRays, light: Vec3A, point: Vec3A) -> Ray {
+/// Between light and point, of which one is at distance 0 and the other at distance 1.
+fn shadow_ray(direction: ShadowRays, light: Vec3A, point: Vec3A, reach: f32) -> Ray {
     match direction {
-        ShadowRays::FromLight => Ray::new(light, point - light),
+        ShadowRays::FromLight => {
+            let start = shadow_start(light, point, reach);
+            Ray::new(start, point - start)
+        }
         ShadowRays::ToLight => Ray::new(point, light - point),
     }
 }
 
+/// The light, or the point towards it at the greatest distance at which a shadow ray starts.
+fn shadow_start(light: Vec3A, point: Vec3A, reach: f32) -> Vec3A {
+    let way = light - point;
+    let distance = way.dot(way).sqrt();
+    if distance > reach { point + way * (reach / distance) } else { light }
+}
+
 impl<'a> Frame<'a> {
-    /// A frame of a view. `epsilon` is [`crate::backend::surface_epsilon`] of the scene.
+    /// A frame of a view.
     pub fn new(
         scene: &'a Scene,
         triangles: Triangles<'a>,
         method: Method,
         (config, view, size): (Config, &'a View, Size),
-        epsilon: f32,
+        lengths: Lengths,
     ) -> Self {
         let grid = view.camera.pixel_grid(size.width, size.height);
         let group = if method.traversal.is_together() { method.group } else { Group::SQUARE };
         let places = std::array::from_fn(|lane| group.place(lane as u32));
-        Frame { scene, triangles, config, size, group, places, method, grid, lights: &view.lights, epsilon }
+        Frame { scene, triangles, config, size, group, places, method, grid, lights: &view.lights, lengths }
     }
 
     fn primary_ray(&self, column: u32, row: u32) -> Ray {
@@ -126,7 +152,8 @@ impl<'a> Frame<'a> {
                     colour[lane] += Vec3A::from(self.scene.background) * weight[lane];
                     alive &= !(1 << lane);
                 } else {
-                    let surface = surface_at(self.triangles, self.scene, &rays[lane], records[lane], self.epsilon);
+                    let surface =
+                        surface_at(self.triangles, self.scene, &rays[lane], records[lane], self.lengths.epsilon);
                     if bounce == 0 {
                         first[lane] = (surface.triangle, surface.t);
                     }
@@ -144,7 +171,7 @@ impl<'a> Frame<'a> {
                 let mut lit = alive;
                 if self.config.shadows() {
                     let position = Vec3A::from(light.position);
-                    let shadow = |s: Surface| shadow_ray(self.method.shadows, position, s.point);
+                    let shadow = |s: Surface| shadow_ray(self.method.shadows, position, s.point, self.lengths.reach);
                     let shadows: Lanes<Ray> = std::array::from_fn(|lane| surfaces[lane].map_or(rays[lane], shadow));
                     bits(alive).for_each(|lane| counters[SHADOW][lane].ray());
                     lit &= !traversal.any_hits(&shadows, 1.0, alive, &mut counters[SHADOW]);

@@ -1,7 +1,7 @@
 //! Phong shading. Twin of `kernels/lib/shade.wgsl`.
 
 use super::traverse::Triangles;
-use crate::math::{Ray, T_MAX};
+use crate::math::Ray;
 use crate::scene::{Light, Material, Scene};
 use glam::Vec3A;
 
@@ -37,8 +37,7 @@ pub fn surface_at(triangles: Triangles, scene: &Scene, ray: &Ray, record: u32, e
     let record = &triangles.records[record as usize];
     let [a, b, c] = record.vertices.map(|v| triangles.vertices[v as usize]);
     let (pa, pb, pc) = (a.position_a(), b.position_a(), c.position_a());
-    // The record was hit a moment ago, by the same computation
-    let hit = triangles.hit(ray, record, T_MAX).unwrap_or(crate::math::TriangleHit { t: T_MAX, u: 0.0, v: 0.0 });
+    let hit = triangles.surface(ray, record);
     let w = 1.0 - hit.u - hit.v;
     let geometric = unit((pb - pa).cross(pc - pa));
     let geometric = geometric * sign(geometric.dot(ray.direction) > 0.0);

@@ -28,8 +28,6 @@ pub fn trace_group<T: Traverse>(
     let records = traversal.nearest_hits(&rays, alive, &mut counters);
     for (lane, hit) in hits.iter_mut().enumerate().filter(|(lane, _)| records[*lane] != MISS) {
         let record = &triangles.records[records[lane] as usize];
-        if let Some(found) = triangles.hit(&rays[lane], record, T_MAX) {
-            *hit = Hit { t: found.t, triangle: record.triangle };
-        }
+        *hit = Hit { t: triangles.surface(&rays[lane], record).t, triangle: record.triangle };
     }
 }

@@ -4,6 +4,7 @@
 use crate::accel::method::{Pattern, ShadowRays, Vote};
 use crate::accel::{Method, Traversal};
 use crate::backend::Config;
+use crate::intersect::{TriangleTest, moller_trumbore};
 use crate::math;
 use std::fmt::Write;
 
@@ -12,6 +13,8 @@ pub const FILES: &[(&str, &str)] = &[
     ("render.wgsl", include_str!("../../kernels/render.wgsl")),
     ("trace.wgsl", include_str!("../../kernels/trace.wgsl")),
     ("lib/geom.wgsl", include_str!("../../kernels/lib/geom.wgsl")),
+    ("lib/intersect/watertight.wgsl", include_str!("../../kernels/lib/intersect/watertight.wgsl")),
+    ("lib/intersect/moller_trumbore.wgsl", include_str!("../../kernels/lib/intersect/moller_trumbore.wgsl")),
     ("lib/scene.wgsl", include_str!("../../kernels/lib/scene.wgsl")),
     ("lib/buffers.wgsl", include_str!("../../kernels/lib/buffers.wgsl")),
     ("lib/textures.wgsl", include_str!("../../kernels/lib/textures.wgsl")),
@@ -145,9 +148,14 @@ impl Kernel {
         };
         let private = matches!(self.method.traversal, Traversal::KdTree(search) if search.private);
         let short_stack = if private { "lib/short_stack_private.wgsl" } else { "lib/short_stack_workgroup.wgsl" };
+        let intersect = match self.method.intersect {
+            TriangleTest::Watertight => "lib/intersect/watertight.wgsl",
+            TriangleTest::MollerTrumbore => "lib/intersect/moller_trumbore.wgsl",
+        };
         let mut assembly = Assembly {
             slots: [
                 ("short_stack", short_stack),
+                ("intersect", intersect),
                 ("memory", if self.textures { "lib/textures.wgsl" } else { "lib/buffers.wgsl" }),
                 ("traversal", traversal_file(self.method.traversal)),
                 ("counting", if counting { "lib/count_on.wgsl" } else { "lib/count_off.wgsl" }),
@@ -169,7 +177,10 @@ impl Kernel {
         let mut float = |name: &str, value: f32| writeln!(text, "const {name}: f32 = {value:?}f;").unwrap();
         float("T_MAX", math::T_MAX);
         float("INVERSE_OF_ZERO", math::INVERSE_OF_ZERO);
-        float("DETERMINANT_MIN", math::DETERMINANT_MIN);
+        float("PLANE_SHIFT", math::PLANE_SHIFT);
+        float("PLANE_SHIFT_MIN", math::PLANE_SHIFT_MIN);
+        float("SLACK", math::SLACK);
+        float("DETERMINANT_MIN", moller_trumbore::DETERMINANT_MIN);
         let mut word = |name: &str, value: u32| writeln!(text, "const {name}: u32 = {value}u;").unwrap();
         word("MISS", math::MISS);
         word("STACK_SIZE", self.stack_size);
@@ -202,7 +213,7 @@ impl Kernel {
 }
 
 struct Assembly {
-    slots: [(&'static str, &'static str); 5],
+    slots: [(&'static str, &'static str); 6],
     seen: Vec<&'static str>,
     source: Source,
 }
@@ -262,6 +273,7 @@ pub fn methods() -> Vec<Method> {
     let plain = Method::from(Traversal::BvhStack);
     methods.extend([
         Method { shadows: ShadowRays::ToLight, ..plain },
+        Method { intersect: TriangleTest::MollerTrumbore, ..plain },
         Method { pattern: Pattern::Four, ..plain },
         Method { group: Group { width: 64, height: 1 }, ..plain },
         Method { group: Group { width: 16, height: 16 }, ..plain },

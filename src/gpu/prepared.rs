@@ -27,6 +27,7 @@ pub(super) struct GpuPrepared<'a> {
     pub(super) method: Method,
     stack_size: u32,
     epsilon: f32,
+    shadow_reach: f32,
     /// Bands per frame that keep a dispatch below the watchdog, by configuration and size.
     pub(super) bands: HashMap<(Config, Size), u32>,
     /// Of the path that was timed last.
@@ -66,6 +67,7 @@ impl<'a> GpuPrepared<'a> {
             method,
             stack_size: stack_size(depth),
             epsilon: surface_epsilon(scene.bounds()),
+            shadow_reach: shadow_reach(scene.bounds()),
             bands: HashMap::new(),
             written: None,
         })
@@ -103,7 +105,8 @@ impl<'a> GpuPrepared<'a> {
                     first_column: tile.column,
                     columns: tile.columns,
                     height: size.height,
-                    pad: [0; 3],
+                    shadow_reach: self.shadow_reach,
+                    pad: [0; 2],
                 };
                 uniforms.extend_from_slice(bytemuck::bytes_of(&uniform));
                 uniforms.resize(uniforms.len().next_multiple_of(stride as usize), 0);

@@ -25,7 +25,8 @@ pub struct FrameUniform {
     pub first_column: u32,
     pub columns: u32,
     pub height: u32,
-    pub pad: [u32; 3],
+    pub shadow_reach: f32,
+    pub pad: [u32; 2],
 }
 
 /// `Structure` of `kernels/lib/scene.wgsl`.

@@ -5,9 +5,23 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// From the top: a module may use those before it.
-const STAIRCASE: [&str; 15] = [
-    "error", "threads", "math", "scene", "config", "camera", "accel", "backend", "cpu", "gpu", "results", "thesis",
-    "bench", "fetch", "cli",
+const STAIRCASE: [&str; 16] = [
+    "error",
+    "threads",
+    "math",
+    "intersect",
+    "scene",
+    "config",
+    "camera",
+    "accel",
+    "backend",
+    "cpu",
+    "gpu",
+    "results",
+    "thesis",
+    "bench",
+    "fetch",
+    "cli",
 ];
 
 /// A line of code (no comment) with its file, relative to `src`.

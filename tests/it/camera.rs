@@ -4,7 +4,8 @@ use crate::support::file_below;
 use glam::Vec3;
 use rtbench::backend::Config;
 use rtbench::camera::{CameraPath, View, names, to_csv, to_toml};
-use rtbench::math::{Ray, T_MAX, intersect};
+use rtbench::intersect::watertight::intersect;
+use rtbench::math::{Ray, T_MAX};
 use rtbench::scene::{self, Pose, Scene, SceneCamera};
 use std::process::Command;
 
@@ -206,13 +207,13 @@ fn walks_keep_out_of_the_geometry() {
         for pair in views.windows(2) {
             let [from, to] = [pair[0].camera.position, pair[1].camera.position];
             let ray = Ray::new(from.into(), (to - from).into());
-            let hit = triangles.iter().position(|&[a, b, c]| intersect(&ray, a, b, c, 1.0).is_some());
+            let hit = triangles.iter().position(|&corners| intersect(&ray, corners, 1.0).is_some());
             assert_eq!(hit, None, "{name}: from {from} to {to}");
         }
         // And it looks at something most of the time.
         let sees = |view: &&View| {
             let ray = Ray::new(view.camera.position.into(), view.camera.direction.into());
-            triangles.iter().any(|&[a, b, c]| intersect(&ray, a, b, c, T_MAX).is_some())
+            triangles.iter().any(|&corners| intersect(&ray, corners, T_MAX).is_some())
         };
         let seeing = views.iter().step_by(20).filter(sees).count();
         assert!(seeing >= 18, "{name}: {seeing} of 20");

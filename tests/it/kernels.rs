@@ -125,7 +125,8 @@ fn struct_layouts_agree() {
             first_pixel,
             first_column,
             columns,
-            height
+            height,
+            shadow_reach
         ]
     );
     same_layout!(

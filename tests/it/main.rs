@@ -4,8 +4,10 @@ mod accel; // builders x degenerate inputs, validation, memory model, determinis
 mod architecture; // who may use whom, and where wgpu, clocks and output may stand
 mod camera; // camera paths: files, thinning, fitting, errors
 mod cli; // the program as a user runs it: outputs, exit codes, broken input
+mod exact; // the ray/triangle test against exact arithmetic
 mod fakes; // records with known content, a device that breaks on demand
 mod kernels; // every kernel variant through naga, struct layouts, no GPU
+mod meshes; // closed meshes, and rays at their vertices and edges
 mod reference; // rays traced by Embree (needs RTBENCH_SCENES)
 mod results; // journal, CSV and JSON agree; statistics; rays and hits
 mod scene; // readers and what breaks them, memory while loading, caches, procedural scenes, the catalogue
@@ -14,3 +16,4 @@ mod sweep; // the sweep loop on a device that breaks, presets, the plan
 mod thesis; // the thesis's numbers, and tables, claims, figures and report from records
 mod traversal; // every traversal against brute force, CPU twins and GPU
 mod verify; // the verifier notices one wrong pixel
+mod watertight; // no ray is lost at edges, on lattices, from afar

@@ -89,3 +89,8 @@ pub fn file_below(variable: &str, path: &str) -> Option<PathBuf> {
     assert!(file.exists(), "{variable} is set, but {} does not exist", file.display());
     Some(file)
 }
+
+/// A file of `tests/data`.
+pub fn data(name: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
+}

@@ -37,7 +37,7 @@ fn rays(count: usize, seed: u32) -> Vec<GivenRay> {
         .collect()
 }
 
-fn trace(backend: &dyn Backend, scene: &Scene, selection: &str, rays: &[GivenRay], any_hit: bool) -> Vec<Hit> {
+pub fn trace(backend: &dyn Backend, scene: &Scene, selection: &str, rays: &[GivenRay], any_hit: bool) -> Vec<Hit> {
     let selection = Selection::parse(selection).unwrap();
     let built = selection.build(scene, 1).unwrap();
     backend.prepare(scene, &built.structure, selection.method()).unwrap().trace(rays, any_hit).unwrap()
@@ -49,7 +49,7 @@ fn allowed(device: &DeviceInfo, of: usize) -> usize {
     if device.is_exact() { 0 } else { (of as f64 * COUNTER_SHARE) as usize }
 }
 
-fn assert_same(device: &DeviceInfo, name: &str, rays: &[GivenRay], expected: &[Hit], found: &[Hit]) {
+pub fn assert_same(device: &DeviceInfo, name: &str, rays: &[GivenRay], expected: &[Hit], found: &[Hit]) {
     assert_eq!(expected.len(), found.len());
     let near = |a: f32, b: f32| {
         a.to_bits() == b.to_bits() || (!device.is_exact() && (a - b).abs() <= 1e-5 * a.abs().max(b.abs()).max(1.0))
@@ -78,11 +78,13 @@ fn names() -> Vec<&'static str> {
 }
 
 /// Ways to walk a structure other than each one's own.
-const OTHERS: [&str; 21] = [
+const OTHERS: [&str; 23] = [
     "kdtree:search=restart",
     "kdtree:search=pushdown",
     "kdtree:stack=1",
     "kdtree:stack=3,memory=private",
+    "kdtree:stack=2",
+    "kdtree:stack=5,memory=private",
     "kdtree:stack=32",
     "bvh:vote=original",
     "bvh:packet=8x4",
@@ -103,12 +105,12 @@ const OTHERS: [&str; 21] = [
     "bvh-stack:fetch=textures",
 ];
 
-fn all_names() -> Vec<&'static str> {
+pub fn all_names() -> Vec<&'static str> {
     names().into_iter().chain(OTHERS).collect()
 }
 
 /// All structures on one backend, nearest and any hit, against brute force on the CPU.
-fn check_all(backend: &dyn Backend, scene: &Scene, rays: &[GivenRay]) {
+pub fn check_all(backend: &dyn Backend, scene: &Scene, rays: &[GivenRay]) {
     let cpu = CpuBackend::new(2).unwrap();
     let nearest = trace(&cpu, scene, "brute", rays, false);
     let hits: Vec<bool> = nearest.iter().map(|hit| hit.triangle != MISS).collect();

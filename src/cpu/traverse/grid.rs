@@ -40,10 +40,11 @@ impl<'a> Grid<'a> {
         }
     }
 
+    /// Distance of the plane below cell `index` of an axis.
     #[inline]
-    fn border_distance(&self, ray: &Ray, index: IVec3) -> Vec3A {
-        let plane = self.min + index.as_vec3a() * self.grid.cell_size;
-        (plane - ray.origin) * ray.inv_direction
+    fn border_distance(&self, ray: &Ray, axis: usize, index: i32) -> f32 {
+        let plane = self.min[axis] + index as f32 * self.grid.cell_size;
+        (plane - ray.origin[axis]) * ray.inv_direction[axis]
     }
 
     #[inline]
@@ -60,19 +61,35 @@ impl<'a> Grid<'a> {
         let ahead = step.cmpgt(IVec3::ZERO);
         let ahead = IVec3::select(ahead, IVec3::ONE, IVec3::ZERO);
 
-        // Find the first cell; rounding may put it one too far along the ray, which would skip the one before
-        let last = self.resolution.as_vec3a() - 1.0;
-        let place = ((ray.origin + ray.direction * t_start - self.min) / self.grid.cell_size).floor();
-        let cell = place.max(Vec3A::ZERO).min(last).as_ivec3();
-        let behind = self.border_distance(ray, cell + IVec3::ONE - ahead);
-        let back = cell - step;
-        let mut cell = cell;
+        // Guess the first cell by the ray's position, and find it by the distances of borders: the first one that the ray
+        // touches at `t_start`. Where the direction is zero, the ray stays in the cell whose lower plane is the last at
+        // or below it, which holds the triangles on both sides of that plane.
+        let guess = ((ray.origin + ray.direction * t_start - self.min) / self.grid.cell_size).floor();
+        let mut cell = guess.max(Vec3A::ZERO).min(self.resolution.as_vec3a() - 1.0).as_ivec3();
+        let mut t_next = Vec3A::ZERO;
         for axis in 0..3 {
-            if behind[axis] > t_start && back[axis] >= 0 && back[axis] < self.resolution[axis] {
-                cell[axis] = back[axis];
+            let parallel = ray.slack[axis] > 0.0;
+            let border = |index: i32| self.border_distance(ray, axis, index);
+            let (step, ahead, last) = (step[axis], ahead[axis], end[axis] - step[axis]);
+            let first = self.resolution[axis] - 1 - last;
+            let c = &mut cell[axis];
+            let is_behind = |c: i32| {
+                let t = border(c + ahead);
+                if parallel { t <= 0.0 } else { t < t_start }
+            };
+            let is_beyond = |c: i32| {
+                let t = border(c + 1 - ahead);
+                if parallel { t > 0.0 } else { t >= t_start }
+            };
+            while *c != last && is_behind(*c) {
+                *c += step;
             }
+            while *c != first && is_beyond(*c) {
+                *c -= step;
+            }
+            t_next[axis] = if parallel { T_MAX } else { border(*c + ahead) };
         }
-        Some(Walk { cell, step, end, ahead, t_next: self.border_distance(ray, cell + ahead) })
+        Some(Walk { cell, step, end, ahead, t_next })
     }
 
     #[inline]
@@ -82,9 +99,10 @@ impl<'a> Grid<'a> {
         self.grid.cells[index]
     }
 
-    /// Go to the neighbour behind the nearest border; false if that leaves the grid.
+    /// Go to the neighbour behind the nearest border; false if that leaves the grid. Where several borders are at that
+    /// distance, the ray touches all cells between them: those before the last one are tested here.
     #[inline]
-    pub(super) fn advance(&self, ray: &Ray, walk: &mut Walk) -> bool {
+    pub(super) fn advance<C: Count>(&self, ray: &Ray, walk: &mut Walk, best: &mut Best, count: &mut C) -> bool {
         let t = walk.t_next;
         let axis = if t.x <= t.y && t.x <= t.z {
             0
@@ -93,10 +111,44 @@ impl<'a> Grid<'a> {
         } else {
             2
         };
-        walk.cell[axis] += walk.step[axis];
-        let plane = self.min[axis] + (walk.cell[axis] + walk.ahead[axis]) as f32 * self.grid.cell_size;
-        walk.t_next[axis] = (plane - ray.origin[axis]) * ray.inv_direction[axis];
-        walk.cell[axis] != walk.end[axis]
+        let t_border = t[axis];
+        let next = walk.cell[axis] + walk.step[axis];
+        walk.t_next[axis] = self.border_distance(ray, axis, next + walk.ahead[axis]);
+        if walk.t_next.min_element() <= t_border {
+            walk.t_next = t;
+            return self.cross_borders(ray, walk, t_border, best, count);
+        }
+        walk.cell[axis] = next;
+        next != walk.end[axis]
+    }
+
+    /// Crosses all borders at distance `t`. From far away, that may be those of many cells.
+    #[cold]
+    fn cross_borders<C: Count>(&self, ray: &Ray, walk: &mut Walk, t: f32, best: &mut Best, count: &mut C) -> bool {
+        let mut last = walk.cell;
+        let mut leaves = false;
+        for axis in 0..3 {
+            while walk.t_next[axis] <= t && last[axis] + walk.step[axis] != walk.end[axis] {
+                last[axis] += walk.step[axis];
+                walk.t_next[axis] = self.border_distance(ray, axis, last[axis] + walk.ahead[axis]);
+            }
+            leaves |= walk.t_next[axis] <= t;
+        }
+        let (low, high) = (walk.cell.min(last), walk.cell.max(last));
+        for z in low.z..=high.z {
+            for y in low.y..=high.y {
+                for x in low.x..=high.x {
+                    let place = IVec3::new(x, y, z);
+                    if place != walk.cell && (place != last || leaves) {
+                        count.inner();
+                        let cell = self.cell(place);
+                        self.triangles.test_records(ray, cell.first, cell.count, best, count);
+                    }
+                }
+            }
+        }
+        walk.cell = last;
+        !leaves
     }
 }
 
@@ -113,13 +165,14 @@ impl TraverseAlone for Grid<'_> {
             self.triangles.test_records(ray, cell.first, cell.count, &mut best, count);
             // A hit ends the search only inside this cell: in front of a farther one something nearer may lie. At the
             // very border the next cell may hold a triangle at the same distance with a lower index.
-            if best.t < walk.t_next.min_element() || !self.advance(ray, &mut walk) {
+            if best.t < walk.t_next.min_element() || !self.advance(ray, &mut walk, &mut best, count) {
                 return best.record;
             }
         }
     }
 
     fn any_hit<C: Count>(&self, ray: &Ray, limit: f32, count: &mut C) -> bool {
+        let mut best = Best::NONE;
         let Some(mut walk) = self.start_walk(ray, limit) else {
             return false;
         };
@@ -129,8 +182,11 @@ impl TraverseAlone for Grid<'_> {
             if self.triangles.any_record_blocks(ray, cell.first, cell.count, limit, count) {
                 return true;
             }
-            if walk.t_next.min_element() > limit || !self.advance(ray, &mut walk) {
-                return false;
+            if walk.t_next.min_element() > limit || !self.advance(ray, &mut walk, &mut best, count) {
+                return best.t < limit;
+            }
+            if best.t < limit {
+                return true;
             }
         }
     }

@@ -28,7 +28,7 @@ impl GridCoop<'_> {
             self.grid.triangles.test_records(ray, cell.first, cell.count, &mut best, count);
             let t_exit = walk.t_next.min_element();
             let found = if any { best.t < limit || t_exit > limit } else { best.t < t_exit };
-            if found || !self.grid.advance(ray, &mut walk) {
+            if found || !self.grid.advance(ray, &mut walk, &mut best, count) {
                 return best;
             }
         }

@@ -8,7 +8,7 @@ use super::grid::Grid;
 use super::{Best, GROUP, Lanes, Traverse, bits};
 use crate::cpu::count::Count;
 use crate::math::{MISS, Ray, T_MAX, ray_box};
-use glam::IVec3;
+use glam::{IVec3, Vec3A};
 
 /// See the module.
 pub struct GridPacket<'a> {
@@ -57,15 +57,23 @@ const NO_CELLS: Range = (i32::MAX, -1);
 impl GridPacket<'_> {
     /// Distance of the plane below cell `index`.
     #[inline]
-    fn border(&self, ray: &Ray, axis: usize, index: i32) -> f32 {
-        (self.grid.min[axis] + index as f32 * self.grid.grid.cell_size - ray.origin[axis]) * ray.inv_direction[axis]
+    fn border(&self, ray: &Ray, axis: usize, index: i32, origin: Vec3A) -> f32 {
+        (self.grid.min[axis] + index as f32 * self.grid.grid.cell_size - origin[axis]) * ray.inv_direction[axis]
     }
 
-    /// Distances at which the ray is in the slab of cell `index`.
+    /// Distances at which the ray is in the slab of cell `index`. A ray in the plane between two slabs is in both.
     #[inline]
     fn slab(&self, ray: &Ray, axis: usize, index: i32) -> (f32, f32) {
-        let (a, b) = (self.border(ray, axis, index), self.border(ray, axis, index + 1));
+        let a = self.border(ray, axis, index, ray.origin_min);
+        let b = self.border(ray, axis, index + 1, ray.origin_max);
         (a.min(b), a.max(b))
+    }
+
+    /// Distance at which the ray leaves the slab of a slice; it is behind a ray in the upper plane, which is in the next
+    /// slice as well.
+    #[inline]
+    fn leave_slice(&self, ray: &Ray, main: usize, index: i32) -> f32 {
+        self.border(ray, main, index, ray.origin).max(self.border(ray, main, index + 1, ray.origin_min))
     }
 
     /// All cells of an axis whose slab the ray is in at any distance from `lo` to `hi`.
@@ -164,7 +172,7 @@ impl GridPacket<'_> {
             // Who runs with the packet is done with a hit before the slice's end; others may find a nearer one later
             for lane in bits(searching) {
                 let ray = &rays[lane];
-                let (_, leave) = self.slab(ray, main, slice);
+                let leave = self.leave_slice(ray, main, slice);
                 let with_packet = (ray.inv_direction[main] >= 0.0) == forward;
                 let behind = with_packet && leave > intervals[lane].far;
                 let found = if any { best[lane].t < limit } else { with_packet && best[lane].t < leave };

@@ -11,7 +11,9 @@ pub mod kdtree;
 
 use super::count::Count;
 use crate::accel::Record;
-use crate::math::{MISS, Ray, T_MAX, TriangleHit, Vertex, intersect};
+use crate::intersect::{TriangleHit, TriangleTest};
+use crate::math::{MISS, Ray, T_MAX, Vertex};
+use glam::Vec3A;
 
 /// Rays of a work-group.
 pub const GROUP: usize = 64;
@@ -69,6 +71,8 @@ pub struct Triangles<'a> {
     pub vertices: &'a [Vertex],
     /// Of the structure.
     pub records: &'a [Record],
+    /// The ray/triangle test.
+    pub test: TriangleTest,
 }
 
 /// The nearest hit so far. Of equal distances the lower triangle index wins, so that the order of tests is no matter.
@@ -88,11 +92,21 @@ impl Best {
 }
 
 impl Triangles<'_> {
+    #[inline(always)]
+    fn corners(&self, record: &Record) -> [Vec3A; 3] {
+        record.vertices.map(|v| self.vertices[v as usize].position_a())
+    }
+
     /// Tests one record.
     #[inline(always)]
     pub fn hit(&self, ray: &Ray, record: &Record, limit: f32) -> Option<TriangleHit> {
-        let [a, b, c] = record.vertices.map(|v| self.vertices[v as usize].position_a());
-        intersect(ray, a, b, c, limit)
+        self.test.intersect(ray, self.corners(record), limit)
+    }
+
+    /// Distance and barycentric coordinates of a record that was hit.
+    #[inline(always)]
+    pub fn surface(&self, ray: &Ray, record: &Record) -> TriangleHit {
+        self.test.surface(ray, self.corners(record))
     }
 
     /// Tests the records of a leaf or cell and keeps the nearest hit.

@@ -1,0 +1,62 @@
+// A watertight ray/triangle test in distance space. Twin: src/intersect/watertight.rs, which says why it loses no ray.
+//
+// Corners become distances along the ray by axis, p = (corner - origin) * inverse direction. Across the ray's major axis
+// each has one rounded 2D position, and the ray is the point 0. It is inside where three comparisons of rounded products
+// agree. Comparisons cannot be contracted, and scale and shear are powers of two or zero, so that fusing one of their
+// products with the subtraction changes nothing.
+
+// A triangle as a ray sees it.
+struct Projected {
+    along: vec3<f32>,    // distances of the corners along the major axis
+    edges: vec3<f32>,    // twice the signed areas between the ray and the edge opposite each corner
+    interval: vec2<f32>, // of the triangle's own box
+    inside: bool,
+}
+
+// The components on the two axes other than the major one.
+fn across(p: vec3<f32>, major: u32) -> vec2<f32> {
+    return vec2<f32>(select(p.x, p.y, major == 0u), select(p.z, p.y, major == 2u));
+}
+
+fn project(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> Projected {
+    let p0 = (v0 - ray.origin) * ray.inv_direction;
+    let p1 = (v1 - ray.origin) * ray.inv_direction;
+    let p2 = (v2 - ray.origin) * ray.inv_direction;
+    let along = vec3<f32>(on_axis(p0, ray.major), on_axis(p1, ray.major), on_axis(p2, ray.major));
+    let scale = across(ray.scale, ray.major);
+    let shear = across(ray.shear, ray.major);
+    let a = across(p0, ray.major) * scale - along.x * shear;
+    let b = across(p1, ray.major) * scale - along.y * shear;
+    let c = across(p2, ray.major) * scale - along.z * shear;
+    let p = vec3<f32>(b.x * c.y, c.x * a.y, a.x * b.y);
+    let q = vec3<f32>(b.y * c.x, c.y * a.x, a.y * b.x);
+    let near = min(min(p0, p1), p2) - ray.slack;
+    let far = max(max(p0, p1), p2) + ray.slack;
+    let interval = vec2<f32>(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
+    return Projected(along, p - q, interval, all(p >= q) != all(p <= q));
+}
+
+fn hit_of(seen: Projected) -> TriangleHit {
+    let e = seen.edges;
+    let sum = e.x + e.y + e.z;
+    let area = select(sum, 1.0, sum == 0.0);
+    let t = (e.x * seen.along.x + e.y * seen.along.y + e.z * seen.along.z) / area;
+    return TriangleHit(min(max(t, seen.interval.x), seen.interval.y), e.y / area, e.z / area);
+}
+
+fn intersect(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> TriangleHit {
+    let seen = project(ray, v0, v1, v2);
+    var hit = TriangleHit(NO_HIT, 0.0, 0.0);
+    if (seen.inside && seen.interval.x <= seen.interval.y) {
+        let found = hit_of(seen);
+        if (found.t > 0.0) {
+            hit = found;
+        }
+    }
+    return hit;
+}
+
+// Of a triangle that was hit: it cannot miss, however a device compiles it.
+fn surface_hit(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> TriangleHit {
+    return hit_of(project(ray, v0, v1, v2));
+}
