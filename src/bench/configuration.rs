@@ -274,6 +274,7 @@ fn check(
         rays: verdict.rays,
         brute_checked: verdict.brute_checked,
         hits_differing: verdict.hits_differing,
+        hits_lost: verdict.hits_lost,
         counters_differing: verdict.counters_differing,
         colours_differing: verdict.colours_differing,
         max_colour_difference: verdict.max_colour_difference,

@@ -7,9 +7,10 @@
 //! counters and the timed kernel's agreement with the counting kernel's are compared to the bit; only colours may
 //! differ, by [`COLOUR_LEVELS`], because `pow` is a library's on one side and a driver's on the other. Other devices may
 //! contract multiplications and additions and approximate divisions: a ray that passes within rounding of an edge can
-//! find the neighbouring triangle, or slip between two. Such rays lie along edges, so that their share is about the
-//! width of rounding over the width of a triangle in the image; [`HIT_SHARE`] is far above that and far below any wrong
-//! kernel. What really differs is recorded with every row.
+//! find the neighbouring triangle. Such rays lie along edges, so that their share is about the width of rounding over the
+//! width of a triangle in the image; [`HIT_SHARE`] is far above that and far below any wrong kernel. No ray may lose its
+//! hit, except at a silhouette: the watertight test is exact about that on every device. What really differs is recorded
+//! with every row.
 
 use crate::accel::brute;
 use crate::accel::method::Rays;
@@ -18,6 +19,8 @@ use crate::backend::{Backend, Config, CountedPixel, GivenRay, Pixel, PixelCounte
 use crate::camera::View;
 use crate::cpu::{CpuBackend, render};
 use crate::error::Result;
+use crate::intersect::TriangleTest;
+use crate::math::MISS;
 use crate::scene::Scene;
 
 /// A colour channel may differ by this many of 255 levels: `pow` of both sides is good to a few units in the last place,
@@ -38,6 +41,9 @@ pub const COUNTER_SHARE: f64 = 5.0e-2;
 /// Relative difference of distances up to which they count as the same on a device that is not exact.
 pub const DISTANCE_SLACK: f32 = 1.0e-4;
 
+/// By how much rays are turned to find out whether they pass a silhouette: eight roundings of a unit vector.
+pub const TURN: f32 = 8.0 * f32::EPSILON;
+
 /// Ray/triangle tests that brute force may spend on one view and size: about half a second on two cores.
 pub const BRUTE_TESTS: usize = 1 << 26;
 
@@ -54,6 +60,9 @@ pub struct Verdict {
     pub brute_checked: u64,
     /// Primary rays whose triangle or distance differs.
     pub hits_differing: u64,
+    /// Of these, how many hit a triangle in the reference, away from silhouettes, and none here: none may, on any device,
+    /// by the watertight test.
+    pub hits_lost: u64,
     /// Pixels whose steps, tests, pops or restarts differ from the CPU twin's (0 where they were not compared).
     pub counters_differing: u64,
     /// Pixels whose colour differs by more than the stated amount.
@@ -164,7 +173,29 @@ impl<'a> Verifier<'a> {
             None => None,
         };
         let reference = self.reference(method, config, view, size)?;
-        Ok(judge(&timed, &found, own.as_ref(), reference, exact))
+        let missing = missing(&timed, &found, reference);
+        let lost = self.not_at_a_silhouette(method, view, size, &missing)?;
+        let reference = self.reference(method, config, view, size)?;
+        Ok(judge(&timed, &found, own.as_ref(), reference, lost, exact))
+    }
+
+    /// How many of these pixels' primary rays hit something however they are turned by a few roundings. A device whose
+    /// division is not exact has slightly other rays, of which those at a silhouette may miss; no other ray may.
+    fn not_at_a_silhouette(&self, method: Method, view: &View, size: Size, pixels: &[usize]) -> Result<u64> {
+        if pixels.is_empty() {
+            return Ok(0);
+        }
+        let turned = |pixel: &usize| {
+            let ray = render::primary_ray(method, view, size, *pixel);
+            let (x, y) = ray.direction.any_orthonormal_pair();
+            let turns =
+                [(0.0, 1.0), (1.0, 1.0), (1.0, 0.0), (1.0, -1.0), (0.0, -1.0), (-1.0, -1.0), (-1.0, 0.0), (-1.0, 1.0)];
+            turns.map(|(a, b)| GivenRay { direction: ray.direction + (x * a + y * b) * TURN, ..ray })
+        };
+        let rays: Vec<GivenRay> = pixels.iter().flat_map(turned).collect();
+        let own = Method { traversal: Traversal::BvhStack, ..method };
+        let hits = self.cpu.prepare(self.scene, self.tree, own)?.trace(&rays, false)?;
+        Ok(hits.chunks(8).filter(|hits| hits.iter().all(|hit| hit.triangle != MISS)).count() as u64)
     }
 
     /// The reference for a view; computed the first time.
@@ -198,9 +229,9 @@ impl<'a> Verifier<'a> {
         size: Size,
     ) -> Result<(u64, u64)> {
         // The same primary rays have been checked for another configuration
+        let rays = method.rays();
         let same = |r: &&Reference| {
-            r.rays.pattern == method.pattern
-                && r.rays.group == method.rays().group
+            Rays { shadows: rays.shadows, ..r.rays } == rays
                 && r.size == size
                 && r.view.camera == view.camera
                 && r.config != config
@@ -209,19 +240,37 @@ impl<'a> Verifier<'a> {
         if let Some(known) = known {
             return Ok((known.brute_checked, known.brute_differing));
         }
-        let rays = (BRUTE_TESTS / self.scene.triangles.len().max(1)).max(64).min(size.pixels());
-        let chosen: Vec<usize> = (0..rays).map(|i| (i as u64 * size.pixels() as u64 / rays as u64) as usize).collect();
+        let count = (BRUTE_TESTS / self.scene.triangles.len().max(1)).max(64).min(size.pixels());
+        let chosen: Vec<usize> =
+            (0..count).map(|i| (i as u64 * size.pixels() as u64 / count as u64) as usize).collect();
         let given: Vec<GivenRay> = chosen.iter().map(|&pixel| render::primary_ray(method, view, size, pixel)).collect();
-        let hits = self.cpu.prepare(self.scene, &self.brute, Traversal::Brute.into())?.trace(&given, false)?;
+        let hits = self
+            .cpu
+            .prepare(self.scene, &self.brute, Method { traversal: Traversal::Brute, ..method })?
+            .trace(&given, false)?;
         let differing = hits.iter().zip(&chosen).filter(|&(hit, &pixel)| {
             hit.triangle != answers.pixels[pixel].triangle || hit.t.to_bits() != answers.distances[pixel].to_bits()
         });
-        Ok((rays as u64, differing.count() as u64))
+        Ok((count as u64, differing.count() as u64))
     }
 }
 
+/// Pixels that hit a triangle in the reference, and none by the timed or by the counting kernel.
+fn missing(timed: &[Pixel], found: &Answers, reference: &Reference) -> Vec<usize> {
+    let is_miss = |pixels: &[Pixel], index: usize| pixels.get(index).is_some_and(|p| p.triangle == MISS);
+    let expected = reference.answers.pixels.iter().enumerate().filter(|(_, pixel)| pixel.triangle != MISS);
+    expected.map(|(index, _)| index).filter(|&i| is_miss(timed, i) || is_miss(&found.pixels, i)).collect()
+}
+
 /// Compares the timed kernel's pixels, the counting kernel's answers and the twin's with the reference.
-fn judge(timed: &[Pixel], found: &Answers, twin: Option<&Answers>, reference: &Reference, exact: bool) -> Verdict {
+fn judge(
+    timed: &[Pixel],
+    found: &Answers,
+    twin: Option<&Answers>,
+    reference: &Reference,
+    lost: u64,
+    exact: bool,
+) -> Verdict {
     let pixels = reference.size.pixels();
     let image: Vec<u8> = timed.iter().flat_map(|p| p.rgba.to_le_bytes()).collect();
     let kernels_differing = timed.iter().zip(&found.pixels).filter(|(a, b)| a != b).count();
@@ -253,6 +302,9 @@ fn judge(timed: &[Pixel], found: &Answers, twin: Option<&Answers>, reference: &R
     };
     demand(reference.brute_differing, 0.0, "rays of the reference itself differ from brute force");
     demand(hits, HIT_SHARE, "primary rays hit another triangle or at another distance");
+    if reference.rays.intersect == TriangleTest::Watertight {
+        demand(lost, 0.0, "primary rays away from silhouettes lost their hit");
+    }
     demand(counters, COUNTER_SHARE, "pixels count other steps or tests than the CPU twin");
     demand(colours, COLOUR_SHARE, &format!("colours differ by more than {COLOUR_LEVELS} levels of 255"));
     demand(kernels_differing as u64, HIT_SHARE, "pixels of the counting kernel differ from the timed kernel's");
@@ -276,6 +328,7 @@ fn judge(timed: &[Pixel], found: &Answers, twin: Option<&Answers>, reference: &R
         rays: pixels as u64,
         brute_checked: reference.brute_checked,
         hits_differing: hits,
+        hits_lost: lost,
         counters_differing: counters,
         colours_differing: colours,
         max_colour_difference: differences.max_colour,

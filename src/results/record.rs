@@ -268,6 +268,9 @@ pub struct Verification {
     pub brute_checked: u64,
     /// Primary rays whose hit differs.
     pub hits_differing: u64,
+    /// Of these, away from silhouettes, how many hit nothing; 0 in runs from before this was counted.
+    #[serde(default)]
+    pub hits_lost: u64,
     /// Pixels whose counters differ.
     pub counters_differing: u64,
     /// Pixels whose colour differs by more than the stated amount.

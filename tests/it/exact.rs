@@ -194,7 +194,7 @@ enum Mutation {
     Strict,
     /// One of the two products of an edge function is not rounded.
     Fused,
-    /// The second corner's position is computed in another order of operations.
+    /// The second corner's position is rounded once, at the end.
     CornerApart,
     /// Triangles seen from the back are missed.
     BackFacesCulled,
@@ -208,8 +208,9 @@ fn mutant(ray: &Ray, corners: [Vec3A; 3], mutation: Mutation) -> Option<Triangle
     let k = ray.major;
     let mut q = p.map(|p| p * ray.scale - Vec3A::splat(p[k]) * ray.shear);
     if mutation == Mutation::CornerApart {
-        let s = corners[1] - ray.origin;
-        q[1] = s * (ray.inv_direction * ray.scale) - Vec3A::splat(s[k]) * (ray.shear * ray.inv_direction[k]);
+        let [s, inv, scale, shear] =
+            [corners[1] - ray.origin, ray.inv_direction, ray.scale, ray.shear].map(|v| Vec3::from(v).as_dvec3());
+        q[1] = (s * inv * scale - shear * (s[k] * inv[k])).as_vec3a();
     }
     let side = |b: Vec3A, c: Vec3A| {
         let (p, q) = (b.yzx() * c.zxy(), b.zxy() * c.yzx());

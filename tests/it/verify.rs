@@ -9,7 +9,7 @@ use rtbench::bench::verify::{COLOUR_LEVELS, Verdict, Verifier};
 use rtbench::camera::{Camera, View};
 use rtbench::cpu::CpuBackend;
 use rtbench::error::Result;
-use rtbench::math::Hit;
+use rtbench::math::{Hit, MISS};
 use rtbench::scene::Scene;
 
 const SIZE: Size = Size { width: 40, height: 24 };
@@ -178,6 +178,59 @@ fn an_inexact_device_may_err_in_a_small_share_only() {
     let wrong = |count: usize| move |pixels: &mut Vec<Pixel>| pixels[..count].iter_mut().for_each(|p| p.triangle ^= 1);
     assert!(judge(false, &wrong(1), &also).ok, "one ray in 960 is within one in a thousand, rounded up");
     assert!(!judge(false, &wrong(2), &also).ok);
+}
+
+/// On a device that is not exact another triangle is within its share, but no ray may find nothing in front of a wall.
+#[test]
+fn one_lost_hit_is_noticed_on_any_device() {
+    let scene = crate::meshes::room(4, Vec3::ONE);
+    let camera =
+        Camera { position: Vec3::new(0.1, 0.2, 0.3), direction: Vec3::NEG_Z, up: Vec3::Y, field_of_view: 50.0 };
+    let view = View { camera, lights: scene.lights.clone() };
+    let built = Selection::parse("bvh-stack").unwrap().build(&scene, 1).unwrap();
+    let cpu = CpuBackend::new(1).unwrap();
+    let check = |selection: &str, spoil: &dyn Fn(&mut Vec<Pixel>)| {
+        let method = Selection::parse(selection).unwrap().method();
+        let inner = cpu.prepare(&scene, &built.structure, method).unwrap();
+        let mut spoiled = Spoiled { inner, timed: spoil, counting: &also };
+        let mut verifier = Verifier::new(&scene, &built.structure).unwrap();
+        verifier.check(&mut spoiled, method, None, (Config::P, &view, SIZE), false).unwrap()
+    };
+    let lose = |pixels: &mut Vec<Pixel>| pixels[100].triangle = MISS;
+    let other = |pixels: &mut Vec<Pixel>| pixels[100].triangle ^= 1;
+    let verdict = check("bvh-stack", &lose);
+    assert!(!verdict.ok && verdict.hits_lost == 1, "{}", verdict.message);
+    let verdict = check("bvh-stack", &other);
+    assert!(verdict.ok && verdict.hits_lost == 0, "{}", verdict.message);
+    // The former test makes no such promise
+    assert!(check("bvh-stack:intersect=moller-trumbore", &lose).ok);
+}
+
+/// A ray at a silhouette may miss on a device whose rays differ by a rounding.
+#[test]
+fn a_miss_at_a_silhouette_is_no_lost_hit() {
+    // The pixel at the middle of the image looks along the edge of the only triangle
+    let points = [Vec3::new(0.0, -9.0, 0.0), Vec3::new(0.0, 9.0, 0.0), Vec3::new(9.0, 0.0, 0.0)];
+    let scene = crate::meshes::scene("half", &points, &[[0, 1, 2]]);
+    let camera = Camera { position: Vec3::Z * 3.0, direction: Vec3::NEG_Z, up: Vec3::Y, field_of_view: 50.0 };
+    let view = View { camera, lights: scene.lights.clone() };
+    let size = Size { width: 41, height: 41 };
+    let built = Selection::parse("bvh-stack").unwrap().build(&scene, 1).unwrap();
+    let cpu = CpuBackend::new(1).unwrap();
+    let method = Selection::parse("bvh-stack").unwrap().method();
+    let check = |pixel: usize| {
+        let inner = cpu.prepare(&scene, &built.structure, method).unwrap();
+        let lose = move |pixels: &mut Vec<Pixel>| {
+            assert_ne!(pixels[pixel].triangle, MISS, "the pixel hits nothing to begin with");
+            pixels[pixel].triangle = MISS;
+        };
+        let mut spoiled = Spoiled { inner, timed: &lose, counting: &also };
+        let mut verifier = Verifier::new(&scene, &built.structure).unwrap();
+        verifier.check(&mut spoiled, method, None, (Config::P, &view, size), false).unwrap()
+    };
+    let at_edge = check(20 * 41 + 20);
+    assert!(at_edge.ok && at_edge.hits_differing == 1 && at_edge.hits_lost == 0, "{}", at_edge.message);
+    assert!(!check(20 * 41 + 21).ok);
 }
 
 /// The reference is traced through a tree; a tree that lost a triangle must be found out by brute force.
