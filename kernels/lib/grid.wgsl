@@ -12,10 +12,10 @@ struct Walk {
     inside: bool,
 }
 
-// Distance of the plane below cell `index` of an axis.
-fn border_distance(ray: Ray, axis: u32, index: i32) -> f32 {
-    let plane = on_axis(structure.bounds_min, axis) + f32(index) * structure.cell_size;
-    return (plane - on_axis(ray.origin, axis)) * on_axis(ray.inv_direction, axis);
+// Distance of the plane below cell `index`, on each axis.
+fn border_distance(ray: Ray, index: vec3<i32>) -> vec3<f32> {
+    let plane = structure.bounds_min + vec3<f32>(index) * structure.cell_size;
+    return (plane - ray.origin) * ray.inv_direction;
 }
 
 fn start_walk(ray: Ray, limit: f32) -> Walk {
@@ -28,47 +28,34 @@ fn start_walk(ray: Ray, limit: f32) -> Walk {
     walk.step = octant.step.xyz;
     walk.end = octant.end.xyz;
     walk.ahead = select(vec3<i32>(1, 1, 1), vec3<i32>(0, 0, 0), negative);
-    if (!walk.inside) {
-        return walk;
-    }
 
-    // Guess the first cell by the ray's position, and find it by the distances of borders
-    let last = vec3<f32>(structure.resolution) - 1.0;
+    // Guess the first cell by the ray's position, and find it by the distances of borders: the first one that the ray
+    // touches at `t_start`. Where the direction is zero, the ray stays in the cell whose lower plane is the last at or
+    // below it, which holds the triangles on both sides of that plane.
+    let parallel = ray.slack > vec3<f32>(0.0, 0.0, 0.0);
+    let resolution = vec3<i32>(structure.resolution);
+    let last = walk.end - walk.step;
+    let first = resolution - 1 - last;
     let guess = floor((ray.origin + ray.direction * t_start - structure.bounds_min) / structure.cell_size);
-    let cell = vec3<i32>(min(max(guess, vec3<f32>(0.0, 0.0, 0.0)), last));
-    for (var axis = 0u; axis < 3u; axis += 1u) {
-        walk.cell[axis] = first_cell(ray, axis, t_start, cell[axis], walk);
-        walk.t_next[axis] = border_distance(ray, axis, walk.cell[axis] + walk.ahead[axis]);
-        if (ray.slack[axis] > 0.0) {
-            walk.t_next[axis] = T_MAX;
+    walk.cell = vec3<i32>(min(max(guess, vec3<f32>(0.0, 0.0, 0.0)), vec3<f32>(resolution - 1)));
+    loop {
+        let t = border_distance(ray, walk.cell + walk.ahead);
+        let behind = select(t < vec3<f32>(t_start), t <= vec3<f32>(0.0), parallel) & walk.cell != last;
+        if (!walk.inside || !any(behind)) {
+            break;
         }
+        walk.cell = select(walk.cell, walk.cell + walk.step, behind);
     }
+    loop {
+        let t = border_distance(ray, walk.cell + 1 - walk.ahead);
+        let beyond = select(t >= vec3<f32>(t_start), t > vec3<f32>(0.0), parallel) & walk.cell != first;
+        if (!walk.inside || !any(beyond)) {
+            break;
+        }
+        walk.cell = select(walk.cell, walk.cell - walk.step, beyond);
+    }
+    walk.t_next = select(border_distance(ray, walk.cell + walk.ahead), vec3<f32>(T_MAX), parallel);
     return walk;
-}
-
-// On one axis, the first cell that the ray touches at `t_start`. Where the direction is zero, the ray stays in the cell
-// whose lower plane is the last at or below it, which holds the triangles on both sides of that plane.
-fn first_cell(ray: Ray, axis: u32, t_start: f32, guess: i32, walk: Walk) -> i32 {
-    let parallel = ray.slack[axis] > 0.0;
-    let step = walk.step[axis];
-    let last = walk.end[axis] - step;
-    let first = i32(structure.resolution[axis]) - 1 - last;
-    var cell = guess;
-    while (cell != last) {
-        let t = border_distance(ray, axis, cell + walk.ahead[axis]);
-        if (!select(t < t_start, t <= 0.0, parallel)) {
-            break;
-        }
-        cell += step;
-    }
-    while (cell != first) {
-        let t = border_distance(ray, axis, cell + 1 - walk.ahead[axis]);
-        if (!select(t >= t_start, t > 0.0, parallel)) {
-            break;
-        }
-        cell -= step;
-    }
-    return cell;
 }
 
 // A cell's first record, and how many it has.
@@ -77,42 +64,49 @@ fn read_cell(cell: vec3<i32>) -> vec2<u32> {
     return read_pair(c.x + structure.resolution.x * (c.y + structure.resolution.y * c.z));
 }
 
-// Go to the neighbour behind the nearest border; false if that leaves the grid. Where several borders are at that distance,
-// the ray touches all cells between them: those before the last one are tested here.
-fn advance(ray: Ray, walk: ptr<function, Walk>, best: ptr<function, Best>) -> bool {
+// What a step leads to: out of the grid, into the neighbour behind the nearest border, or, where several borders are at its
+// distance, nowhere yet: cross_borders must follow.
+const OUTSIDE: u32 = 0u;
+const INSIDE: u32 = 1u;
+const TIED: u32 = 2u;
+
+fn advance(ray: Ray, walk: ptr<function, Walk>) -> u32 {
     let t = (*walk).t_next;
-    var axis = 2u;
+    var chosen = vec3<bool>(false, false, true);
     if (t.x <= t.y && t.x <= t.z) {
-        axis = 0u;
+        chosen = vec3<bool>(true, false, false);
     } else if (t.y <= t.z) {
-        axis = 1u;
+        chosen = vec3<bool>(false, true, false);
     }
-    let chosen = vec3<bool>(axis == 0u, axis == 1u, axis == 2u);
     let cell = select((*walk).cell, (*walk).cell + (*walk).step, chosen);
-    let ahead = cell + (*walk).ahead;
-    let index = select(select(ahead.z, ahead.y, axis == 1u), ahead.x, axis == 0u);
-    let t_next = select(t, vec3<f32>(border_distance(ray, axis, index)), chosen);
-    let t_border = on_axis(t, axis);
-    if (min(min(t_next.x, t_next.y), t_next.z) <= t_border) {
-        return cross_borders(ray, walk, t_border, best);
+    let t_next = select(t, border_distance(ray, cell + (*walk).ahead), chosen);
+    if (min(min(t_next.x, t_next.y), t_next.z) <= min(min(t.x, t.y), t.z)) {
+        return TIED;
     }
     (*walk).cell = cell;
     (*walk).t_next = t_next;
-    return all(cell != (*walk).end);
+    return select(OUTSIDE, INSIDE, all(cell != (*walk).end));
 }
 
-// Crosses all borders at distance `t`. From far away, that may be those of many cells.
-fn cross_borders(ray: Ray, walk: ptr<function, Walk>, t: f32, best: ptr<function, Best>) -> bool {
+// Crosses all borders at the distance of the nearest one; false if that leaves the grid. The ray touches every cell between
+// them: those before the last one are tested here. From far away, that may be many.
+//
+// Called between two loops of steps and not within one: a software driver goes through the text of a branch for every
+// step, whether a ray takes it or not.
+fn cross_borders(ray: Ray, walk: ptr<function, Walk>, best: ptr<function, Best>) -> bool {
+    let t = vec3<f32>(min(min((*walk).t_next.x, (*walk).t_next.y), (*walk).t_next.z));
     let first = (*walk).cell;
-    var last = first;
-    var leaves = false;
-    for (var axis = 0u; axis < 3u; axis += 1u) {
-        while ((*walk).t_next[axis] <= t && last[axis] + (*walk).step[axis] != (*walk).end[axis]) {
-            last[axis] += (*walk).step[axis];
-            (*walk).t_next[axis] = border_distance(ray, axis, last[axis] + (*walk).ahead[axis]);
+    let end = (*walk).end - (*walk).step;
+    loop {
+        let further = (*walk).t_next <= t & (*walk).cell != end;
+        if (!any(further)) {
+            break;
         }
-        leaves = leaves || (*walk).t_next[axis] <= t;
+        (*walk).cell = select((*walk).cell, (*walk).cell + (*walk).step, further);
+        (*walk).t_next = select((*walk).t_next, border_distance(ray, (*walk).cell + (*walk).ahead), further);
     }
+    let last = (*walk).cell;
+    let leaves = any((*walk).t_next <= t);
     let low = min(first, last);
     let high = max(first, last);
     for (var z = low.z; z <= high.z; z += 1) {
@@ -130,6 +124,5 @@ fn cross_borders(ray: Ray, walk: ptr<function, Walk>, t: f32, best: ptr<function
             }
         }
     }
-    (*walk).cell = last;
     return !leaves;
 }

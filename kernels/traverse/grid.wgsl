@@ -13,17 +13,26 @@ fn nearest_hit(ray: Ray, alive: bool) -> u32 {
         return MISS;
     }
     loop {
-        // Test everything in this cell
-        count_inner();
-        let cell = read_cell(walk.cell);
-        for (var i = cell.x; i < cell.x + cell.y; i += 1u) {
-            count_test();
-            test_record(ray, i, &best);
+        var way = OUTSIDE;
+        loop {
+            // Test everything in this cell
+            count_inner();
+            let cell = read_cell(walk.cell);
+            for (var i = cell.x; i < cell.x + cell.y; i += 1u) {
+                count_test();
+                test_record(ray, i, &best);
+            }
+            // A hit ends the search only inside this cell: in front of a farther one something nearer may lie. At the very
+            // border the next cell may hold a triangle at the same distance with a lower index.
+            if (best.t < min(min(walk.t_next.x, walk.t_next.y), walk.t_next.z)) {
+                break;
+            }
+            way = advance(ray, &walk);
+            if (way != INSIDE) {
+                break;
+            }
         }
-        // A hit ends the search only inside this cell: in front of a farther one something nearer may lie. At the very
-        // border the next cell may hold a triangle at the same distance with a lower index.
-        let t_exit = min(min(walk.t_next.x, walk.t_next.y), walk.t_next.z);
-        if (best.t < t_exit || !advance(ray, &walk, &best)) {
+        if (way != TIED || !cross_borders(ray, &walk, &best)) {
             break;
         }
     }
@@ -31,7 +40,6 @@ fn nearest_hit(ray: Ray, alive: bool) -> u32 {
 }
 
 fn any_hit(ray: Ray, limit: f32, alive: bool) -> bool {
-    var best = no_best(); // of cells that are tested while borders are crossed
     if (!alive) {
         return false;
     }
@@ -39,22 +47,29 @@ fn any_hit(ray: Ray, limit: f32, alive: bool) -> bool {
     if (!walk.inside) {
         return false;
     }
+    var best = no_best(); // of the cells between tied borders
     loop {
-        count_inner();
-        let cell = read_cell(walk.cell);
-        for (var i = cell.x; i < cell.x + cell.y; i += 1u) {
-            count_test();
-            if (record_blocks(ray, i, limit)) {
-                return true;
+        var way = OUTSIDE;
+        loop {
+            count_inner();
+            let cell = read_cell(walk.cell);
+            for (var i = cell.x; i < cell.x + cell.y; i += 1u) {
+                count_test();
+                if (record_blocks(ray, i, limit)) {
+                    return true;
+                }
+            }
+            if (min(min(walk.t_next.x, walk.t_next.y), walk.t_next.z) > limit) {
+                return false;
+            }
+            way = advance(ray, &walk);
+            if (way != INSIDE) {
+                break;
             }
         }
-        let t_exit = min(min(walk.t_next.x, walk.t_next.y), walk.t_next.z);
-        if (t_exit > limit || !advance(ray, &walk, &best)) {
-            return best.t < limit;
-        }
-        if (best.t < limit) {
-            return true;
+        if (way != TIED || !cross_borders(ray, &walk, &best) || best.t < limit) {
+            break;
         }
     }
-    return false;
+    return best.t < limit;
 }

@@ -90,18 +90,32 @@ fn find(ray: Ray, limit: f32, anything: bool, alive: bool) -> Found {
     var best = NOTHING;
     var walk = start_walk(ray, limit);
     var searching = alive && walk.inside;
+    var leave = false; // the cell has been visited
     group_ray[lane] = ray;
     loop {
         // On to the next cell that holds anything
         var tests = 0u;
-        while (searching && tests == 0u) {
-            count_inner();
-            let cell = read_cell(walk.cell);
-            first_record[lane] = cell.x;
-            tests = cell.y;
-            if (tests == 0u) {
-                searching = go_on(ray, limit, anything, &best, &walk);
+        loop {
+            var way = INSIDE;
+            while (searching && tests == 0u) {
+                if (leave) {
+                    way = go_on(ray, limit, anything, best.t, &walk);
+                    searching = way != OUTSIDE;
+                }
+                if (way != INSIDE) {
+                    break;
+                }
+                count_inner();
+                let cell = read_cell(walk.cell);
+                first_record[lane] = cell.x;
+                tests = cell.y;
+                leave = true;
             }
+            if (way != TIED) {
+                break;
+            }
+            searching = cross_borders_to(ray, &walk, &best);
+            leave = false;
         }
         count_tests(tests);
         let total = number_tests(tests);
@@ -128,24 +142,22 @@ fn find(ray: Ray, limit: f32, anything: bool, alive: bool) -> Found {
             }
             workgroupBarrier();
         }
-        if (searching) {
-            searching = go_on(ray, limit, anything, &best, &walk);
-        }
     }
     return best;
 }
 
-// Leaves a cell; false at the end of the search.
-fn go_on(ray: Ray, limit: f32, anything: bool, best: ptr<function, Found>, walk: ptr<function, Walk>) -> bool {
+// Leaves a cell; OUTSIDE also at the end of the search.
+fn go_on(ray: Ray, limit: f32, anything: bool, best: f32, walk: ptr<function, Walk>) -> u32 {
     let t_exit = min(min((*walk).t_next.x, (*walk).t_next.y), (*walk).t_next.z);
-    if (anything && ((*best).t < limit || t_exit > limit)) {
-        return false;
+    if (select(best < t_exit, best < limit || t_exit > limit, anything)) {
+        return OUTSIDE;
     }
-    if (!anything && (*best).t < t_exit) {
-        return false;
-    }
+    return advance(ray, walk);
+}
+
+fn cross_borders_to(ray: Ray, walk: ptr<function, Walk>, best: ptr<function, Found>) -> bool {
     var own = Best(min((*best).t, T_MAX), (*best).record);
-    let inside = advance(ray, walk, &own);
+    let inside = cross_borders(ray, walk, &own);
     if (own.record != (*best).record) {
         *best = Found(own.t, read_record(own.record).w, own.record);
     }
