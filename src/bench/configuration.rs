@@ -137,6 +137,7 @@ pub fn structure_record(subject: &Subject, selection: &Selection, built: &Built)
         build_ms: built.build_ms,
         build_threads: built.build_threads,
         memory: Memory::default(),
+        note: built.note.clone(),
     }
 }
 

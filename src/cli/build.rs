@@ -68,6 +68,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
                 built = selection.build(&scene, arguments.threads)?;
                 times.push(built.build_ms);
             }
+            if !built.note.is_empty() {
+                output::note(&format!("{} {}: {}", scene.name, selection.name(), built.note));
+            }
             if arguments.validate {
                 match built.structure.validate(&scene) {
                     Ok(()) => output::note(&format!("{} {}: valid", scene.name, selection.name())),
@@ -85,6 +88,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
                 build_ms: statistics::median(&times).unwrap_or(built.build_ms),
                 build_threads: built.build_threads,
                 memory: sweep::memory(&built, &scene, None),
+                note: built.note.clone(),
             }));
         }
     }
