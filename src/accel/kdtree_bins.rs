@@ -3,11 +3,14 @@
 //! M. Shevtsov, A. Soupikov, A. Kapustin: Highly Parallel Fast KD-tree Construction for Interactive Ray Tracing of
 //! Dynamic Scenes, 2007. Per axis one array counts the boxes that begin in a bin and one those that end in it.
 
-use super::kdtree_build::{Config, Split, Spread};
+use super::kdtree_build::Split;
 use super::prims::{CHUNK, Prim};
 use crate::math::Aabb;
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
+
+/// Triangles that one thread counts.
+const SHARE: usize = 4 * CHUNK;
 
 /// Most bins per axis.
 pub const MAX_BINS: usize = 64;
@@ -116,28 +119,12 @@ impl Tally {
     }
 }
 
-/// What the boxes of the triangles `own` take up of a cell.
-fn content(prims: &[Prim], own: &[u32], cell: &Aabb) -> Aabb {
-    let around = |chunk: &[u32]| {
-        let empty = (Vec4::INFINITY, Vec4::NEG_INFINITY);
-        chunk.iter().map(|&i| &prims[i as usize]).fold(empty, |(min, max), p| (min.min(p.min), max.max(p.max)))
-    };
-    let parts: Vec<(Vec4, Vec4)> = own.par_chunks(4 * CHUNK).map(around).collect();
-    parts.iter().fold(Aabb { min: cell.max, max: cell.min }, |all, &(min, max)| Aabb {
-        min: all.min.min(min.truncate().max(cell.min)),
-        max: all.max.max(max.truncate().min(cell.max)),
-    })
-}
-
 /// The cheapest plane for the triangles `own` (numbers in `prims`) on any axis; none that cuts off less than `thin`.
-/// Candidates lie between equal slices of the cell or of its content, whose own borders are candidates, too.
-pub(super) fn find(prims: &[Prim], own: &[u32], cell: &Aabb, config: &Config, thin: f32) -> Option<Split> {
-    let over = match config.spread {
-        Spread::Cell => *cell,
-        Spread::Content => content(prims, own, cell),
-    };
-    let axes = [0, 1, 2].map(|a| Axis::new(over.min[a], over.max[a], config.bins));
-    let guess = Guess::new(&over, config.bins);
+/// Candidates lie between `bins` equal slices of `over`, a part of the cell outside of which there is nothing of them; so do
+/// its borders, if they are not the cell's.
+pub(super) fn find(prims: &[Prim], own: &[u32], cell: &Aabb, over: &Aabb, bins: usize, thin: f32) -> Option<Split> {
+    let axes = [0, 1, 2].map(|a| Axis::new(over.min[a], over.max[a], bins));
+    let guess = Guess::new(over, bins);
     // The cell's own border is no candidate, and nothing lies there that need be counted.
     let lower = Vec3::select(over.min.cmpgt(cell.min), over.min, Vec3::NEG_INFINITY).extend(f32::NEG_INFINITY);
     let upper = Vec3::select(over.max.cmplt(cell.max), over.max, Vec3::INFINITY).extend(f32::INFINITY);
@@ -162,8 +149,13 @@ pub(super) fn find(prims: &[Prim], own: &[u32], cell: &Aabb, config: &Config, th
         }
         tally
     };
-    let mut total = Tally::ZERO;
-    own.par_chunks(4 * CHUNK).map(count).collect::<Vec<_>>().iter().for_each(|part| total.merge(part));
+    let total = if own.len() <= SHARE {
+        count(own)
+    } else {
+        let mut total = Tally::ZERO;
+        own.par_chunks(SHARE).map(count).collect::<Vec<_>>().iter().for_each(|part| total.merge(part));
+        total
+    };
     let mut best: Option<Split> = None;
     for a in 0..3 {
         let sides = Sides::new(cell, a, thin);

@@ -13,6 +13,7 @@ use super::{Record, prims::record};
 use crate::error::{Error, Result};
 use crate::math::Aabb;
 use crate::scene::Scene;
+use glam::{BVec4A, Vec4};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// No tree is deeper than this, whatever is set.
@@ -119,8 +120,9 @@ impl Builder {
         self.spent.load(Relaxed) > self.limit
     }
 
-    /// Builds the subtree of the triangles `own` (numbers in `prims`, ascending).
-    fn grow(&self, prims: &[Prim], own: Vec<u32>, cell: Aabb, depth: u32) -> Part {
+    /// Builds the subtree of some triangles.
+    fn grow(&self, prims: &[Prim], side: Side, cell: Aabb, depth: u32) -> Part {
+        let Side { own, content } = side;
         let count = own.len();
         if count < self.config.exact_below {
             let prims: Vec<Prim> = own.iter().map(|&i| prims[i as usize]).collect();
@@ -129,7 +131,7 @@ impl Builder {
         let split = if self.must_stop(count, depth) || self.is_broke() {
             None
         } else {
-            kdtree_bins::find(prims, &own, &cell, &self.config, self.thin)
+            kdtree_bins::find(prims, &own, &cell, &self.over(&cell, content), self.config.bins, self.thin)
                 .filter(|split| self.pays(count, split.weighted, half_area(&cell)))
         };
         let Some(split) = split else {
@@ -144,27 +146,51 @@ impl Builder {
         let parts = if split.left + split.right > TASK { rayon::join(a, b) } else { (a(), b()) };
         Part::Inner(split.axis, split.plane, Box::new(parts))
     }
+
+    /// What a node's bins are spread over.
+    fn over(&self, cell: &Aabb, content: Aabb) -> Aabb {
+        match self.config.spread {
+            Spread::Cell => *cell,
+            Spread::Content => Aabb { min: content.min.max(cell.min), max: content.max.min(cell.max) },
+        }
+    }
+}
+
+/// The triangles of a node.
+struct Side {
+    /// Numbers in the list of all, ascending.
+    own: Vec<u32>,
+    /// The box around their boxes, which may reach out of the node's cell.
+    content: Aabb,
 }
 
 /// Both sides' triangles, in their order. Every triangle is written to both, and only the sides that it belongs to
-/// advance (each has room for one more): no branch to mispredict.
-fn divide(prims: &[Prim], own: &[u32], split: &Split) -> (Vec<u32>, Vec<u32>) {
+/// advance (each has room for one more) and grow: no branch to mispredict.
+fn divide(prims: &[Prim], own: &[u32], split: &Split) -> (Side, Side) {
     let Split { axis, plane, planar_left, .. } = *split;
     let (mut left, mut right) = (vec![0; split.left + 1], vec![0; split.right + 1]);
     let (mut left_count, mut right_count) = (0, 0);
+    let mut around = [(Vec4::INFINITY, Vec4::NEG_INFINITY); 2];
     for &i in own {
         let prim = &prims[i as usize];
         let (min, max) = (prim.min[axis], prim.max[axis]);
         let planar = (min == plane) & (max == plane);
         left[left_count] = i;
         right[right_count] = i;
-        left_count += usize::from((min < plane) | (planar & planar_left));
-        right_count += usize::from((max > plane) | (planar & !planar_left));
+        let goes = [(min < plane) | (planar & planar_left), (max > plane) | (planar & !planar_left)];
+        left_count += usize::from(goes[0]);
+        right_count += usize::from(goes[1]);
+        for (around, goes) in around.iter_mut().zip(goes) {
+            let goes = BVec4A::splat(goes);
+            around.0 = around.0.min(Vec4::select(goes, prim.min, Vec4::INFINITY));
+            around.1 = around.1.max(Vec4::select(goes, prim.max, Vec4::NEG_INFINITY));
+        }
     }
     debug_assert_eq!((left_count, right_count), (split.left, split.right));
     left.truncate(split.left);
     right.truncate(split.right);
-    (left, right)
+    let [of_left, of_right] = around.map(|(min, max)| Aabb { min: min.truncate(), max: max.truncate() });
+    (Side { own: left, content: of_left }, Side { own: right, content: of_right })
 }
 
 /// The cells on both sides of a plane.
@@ -249,7 +275,7 @@ impl KdNode {
 /// Most leaves and records of the tree over so many triangles. The published trees have at most ten per triangle. Where
 /// long triangles cross in a plane, splits that pay in the model double the records from level to level.
 fn limit(triangles: usize) -> usize {
-    (256 * triangles).clamp(1 << 16, MAX_LEAVES_AND_RECORDS)
+    (256 * triangles).min((1 << 26).max(32 * triangles)).clamp(1 << 16, MAX_LEAVES_AND_RECORDS)
 }
 
 /// The depth to try after one that made the tree too large.
@@ -290,7 +316,8 @@ pub fn build(scene: &Scene, config: &Config) -> Result<KdBuilt> {
         spent: AtomicUsize::new(0),
     };
     let part = loop {
-        let part = builder.grow(&prims, (0..prims.len() as u32).collect(), bounds, 0);
+        let all = Side { own: (0..prims.len() as u32).collect(), content: bounds };
+        let part = builder.grow(&prims, all, bounds, 0);
         if !builder.is_broke() {
             break part;
         }

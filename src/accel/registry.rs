@@ -288,7 +288,7 @@ pub fn variants() -> &'static [VariantInfo] {
         VariantInfo {
             name: "ploc-stack",
             alias: "",
-            summary: "BVH built by obvhs (PLOC with reinsertion), one ray per thread with a stack of its own",
+            summary: "BVH built by obvhs (PLOC with reinsertion; as bvh where that takes too long), a stack per ray",
             paper: "Meister and Bittner 2018",
             build_options: &[OptionInfo {
                 key: "preset",
@@ -398,7 +398,13 @@ fn vote(s: &Selection) -> Traversal {
 
 fn build_ploc(s: &Selection, scene: &Scene) -> Result<Made> {
     let params = ploc::preset(s.value("preset")).expect("the table lists the presets");
-    Ok(Structure::Bvh(ploc::build(scene, params)?).into())
+    if let Some(bvh) = ploc::build(scene, params)? {
+        return Ok(Structure::Bvh(bvh).into());
+    }
+    let bvh = bvh_build::build(scene, &bvh_build::Config::default())?;
+    let note =
+        "built as bvh: PLOC would take excessive time over so many boxes that are equal, in a row or inside each other";
+    Ok(Made { structure: Structure::Bvh(bvh), note: note.to_owned() })
 }
 
 impl Kind {

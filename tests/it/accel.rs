@@ -2,6 +2,7 @@
 //! the published numbers.
 
 mod broken;
+mod degenerate;
 mod registry;
 mod scenes;
 mod thesis;
