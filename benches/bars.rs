@@ -6,6 +6,7 @@
 mod common;
 
 use common::{Input, median, ratio, sorted};
+use glam::Vec3;
 use rtbench::accel::Selection;
 use rtbench::scene::Scene;
 use std::hint::black_box;
@@ -32,6 +33,7 @@ fn main() {
     if !common::measuring() {
         println!("only a test that this runs: use cargo bench --bench bars");
         bars("scan", &common::scan(1000), 3);
+        degenerate(1000, 3);
         return;
     }
     let mut scenes = common::models();
@@ -41,6 +43,32 @@ fn main() {
     for (name, scene) in &scenes {
         let rounds = if scene.triangles.len() > 500_000 { 11 } else { 41 };
         bars(name, scene, rounds);
+    }
+    degenerate(20_000, 11);
+}
+
+/// Where PLOC alone would take time with the square of the triangles: `ploc-stack` may take three times as long as `bvh`, and
+/// a second.
+fn degenerate(triangles: usize, rounds: usize) {
+    let corners = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    let steps = [("in one place", Vec3::ZERO), ("cards", Vec3::Z), ("in a row", Vec3::X)];
+    for (name, step) in steps {
+        let scene = common::soup((0..triangles).map(|i| corners.map(|corner| corner + step * i as f32)));
+        let mut contestants = [
+            own("bvh", "bvh", 0, &scene),
+            own("ploc-stack", "ploc-stack", 0, &scene),
+            own("ploc-stack, very-slow", "ploc-stack:preset=very-slow", 0, &scene),
+            own("kdtree", "kdtree", 0, &scene),
+            own("grid", "grid", 0, &scene),
+        ];
+        let mut runs: Vec<&mut dyn FnMut() -> f64> = contestants.iter_mut().map(|c| &mut *c.1 as _).collect();
+        let times = common::interleaved(&mut runs, rounds);
+        println!("{triangles} triangles {name}, all threads, {rounds} interleaved rounds");
+        for ((label, _), times) in contestants.iter().zip(&times) {
+            println!("  {label:28} median {:8.2} ms, slowest {:8.2} ms", median(times), sorted(times)[rounds - 1]);
+        }
+        let allowed = 3.0 * median(&times[0]) + 1000.0;
+        println!("  ploc-stack: {:.2} ms, bar: at most {allowed:.2} ms", median(&times[1]));
     }
 }
 

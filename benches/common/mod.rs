@@ -4,12 +4,14 @@
 
 use bvh::aabb::Bounded;
 use bvh::bounding_hierarchy::BHShape;
+use glam::Vec3;
 use obvhs::BvhBuildParams;
 use obvhs::bvh2::Bvh2;
 use obvhs::triangle::Triangle;
 use parry3d::partitioning::BvhBuildStrategy;
 use rtbench::accel::prims;
-use rtbench::scene::{Scene, load};
+use rtbench::math::Vertex;
+use rtbench::scene::{Material, Scene, load};
 
 /// True under `cargo bench`; false where cargo only tests that the benches run.
 pub fn measuring() -> bool {
@@ -40,6 +42,17 @@ pub fn models() -> Vec<(&'static str, Scene)> {
 /// A built-in scene of about this many triangles.
 pub fn scan(triangles: usize) -> Scene {
     load(&format!("scan:triangles={triangles}")).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// A scene of separate triangles.
+pub fn soup(triangles: impl IntoIterator<Item = [Vec3; 3]>) -> Scene {
+    let mut scene = Scene { materials: vec![Material::matt(Vec3::ONE)], ..Scene::default() };
+    for corners in triangles {
+        let first = scene.vertices.len() as u32;
+        scene.vertices.extend(corners.map(|corner| Vertex::new(corner, Vec3::Z)));
+        scene.triangles.push(rtbench::scene::Triangle { vertices: [first, first + 1, first + 2], material: 0 });
+    }
+    scene
 }
 
 /// A pool of so many threads; 0: as many as there are.

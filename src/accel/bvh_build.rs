@@ -137,9 +137,10 @@ impl Builder {
 
     /// Bins for the centroids of a node.
     fn binning(&self, items: &[Item]) -> Binning {
-        // Most nodes are small. Half the bins do there (bunny: 0.1 % on the cost), since more would stay empty.
+        // Most nodes are small. Half the bins do there (bunny: 0.1 % on the cost), since more would stay empty; not fewer
+        // than four, though.
         let Config { bins, .. } = self.config;
-        let bins = if items.len() <= 2 * bins { bins.div_ceil(2).max(2) } else { bins };
+        let bins = if items.len() <= 2 * bins { bins.div_ceil(2).max(bins.min(4)) } else { bins };
         Binning::new(&centroid_bounds(items), bins)
     }
 

@@ -9,6 +9,9 @@ use crate::math::Aabb;
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
+/// Triangles that one thread counts.
+const SHARE: usize = 4 * CHUNK;
+
 /// Most bins per axis.
 pub const MAX_BINS: usize = 64;
 
@@ -54,10 +57,10 @@ struct Guess {
 }
 
 impl Guess {
-    fn new(cell: &Aabb, bins: usize) -> Guess {
-        let extent = cell.max - cell.min;
+    fn new(over: &Aabb, bins: usize) -> Guess {
+        let extent = over.max - over.min;
         let scale = Vec3::select(extent.cmpgt(Vec3::ZERO), bins as f32 / extent, Vec3::ZERO).min(Vec3::splat(f32::MAX));
-        Guess { min: cell.min.extend(0.0), scale: scale.extend(0.0), most: Vec4::splat(bins as f32 - 0.01) }
+        Guess { min: over.min.extend(0.0), scale: scale.extend(0.0), most: Vec4::splat(bins as f32 - 0.01) }
     }
 
     /// The number is pushed into the low mantissa bits of a float: `2^15 + x` has the bits of `x * 256`.
@@ -91,16 +94,45 @@ impl Counts {
     }
 }
 
-/// The cheapest, for the triangles `own` (numbers in `prims`), of the planes between `bins` equal slices of the cell, on
-/// any axis; none that cuts off less than `thin`.
-pub(super) fn find(prims: &[Prim], own: &[u32], cell: &Aabb, bins: usize, thin: f32) -> Option<Split> {
-    let axes = [0, 1, 2].map(|a| Axis::new(cell.min[a], cell.max[a], bins));
-    let guess = Guess::new(cell, bins);
+/// What one chunk of triangles counts.
+struct Tally {
+    axes: [Counts; 3],
+    /// By axis, boxes that lie in the lower and in the upper border of what the bins are spread over.
+    borders: [[u32; 3]; 2],
+}
+
+impl Tally {
+    const ZERO: Tally = Tally { axes: [Counts::ZERO; 3], borders: [[0; 3]; 2] };
+
+    fn merge(&mut self, other: &Tally) {
+        self.axes.iter_mut().zip(&other.axes).for_each(|(total, part)| total.merge(part));
+        let borders = self.borders.as_flattened_mut().iter_mut().zip(other.borders.as_flattened());
+        borders.for_each(|(total, part)| *total += part);
+    }
+
+    /// Notes the axes, as bits, on which a box lies in a border. Few boxes do.
+    #[cold]
+    fn lies(&mut self, in_lower: u32, in_upper: u32) {
+        for (border, bits) in self.borders.iter_mut().zip([in_lower, in_upper]) {
+            (0..3).for_each(|axis| border[axis] += bits >> axis & 1);
+        }
+    }
+}
+
+/// The cheapest plane for the triangles `own` (numbers in `prims`) on any axis; none that cuts off less than `thin`.
+/// Candidates lie between `bins` equal slices of `over`, a part of the cell outside of which there is nothing of them; so do
+/// its borders, if they are not the cell's.
+pub(super) fn find(prims: &[Prim], own: &[u32], cell: &Aabb, over: &Aabb, bins: usize, thin: f32) -> Option<Split> {
+    let axes = [0, 1, 2].map(|a| Axis::new(over.min[a], over.max[a], bins));
+    let guess = Guess::new(over, bins);
+    // The cell's own border is no candidate, and nothing lies there that need be counted.
+    let lower = Vec3::select(over.min.cmpgt(cell.min), over.min, Vec3::NEG_INFINITY).extend(f32::NEG_INFINITY);
+    let upper = Vec3::select(over.max.cmplt(cell.max), over.max, Vec3::INFINITY).extend(f32::INFINITY);
     let count = |chunk: &[u32]| {
-        let mut counts = [Counts::ZERO; 3];
+        let mut tally = Tally::ZERO;
         for prim in chunk.iter().map(|&i| &prims[i as usize]) {
             let (min_guess, max_guess) = (guess.of(prim.min), guess.of(prim.max));
-            for (a, (axis, counts)) in axes.iter().zip(&mut counts).enumerate() {
+            for (a, (axis, counts)) in axes.iter().zip(&mut tally.axes).enumerate() {
                 let (begin, top) = (axis.bin(prim.min[a], min_guess[a]), axis.bin(prim.max[a], max_guess[a]));
                 // A box that ends in a plane ends below it. There is no plane below bin 0.
                 let end = top - usize::from(axis.planes[top] == prim.max[a]);
@@ -110,29 +142,43 @@ pub(super) fn find(prims: &[Prim], own: &[u32], cell: &Aabb, bins: usize, thin: 
                     counts.planar[begin] += 1;
                 }
             }
+            let (in_lower, in_upper) = (prim.max.cmple(lower).bitmask(), prim.min.cmpge(upper).bitmask());
+            if in_lower | in_upper != 0 {
+                tally.lies(in_lower, in_upper);
+            }
         }
-        counts
+        tally
     };
-    let mut total = [Counts::ZERO; 3];
-    for part in own.par_chunks(4 * CHUNK).map(count).collect::<Vec<_>>() {
-        total.iter_mut().zip(&part).for_each(|(total, part)| total.merge(part));
-    }
+    let total = if own.len() <= SHARE {
+        count(own)
+    } else {
+        let mut total = Tally::ZERO;
+        own.par_chunks(SHARE).map(count).collect::<Vec<_>>().iter().for_each(|part| total.merge(part));
+        total
+    };
     let mut best: Option<Split> = None;
     for a in 0..3 {
-        sweep(&axes[a], &total[a], own.len(), &Sides::new(cell, a, thin), &mut best);
+        let sides = Sides::new(cell, a, thin);
+        let [in_lower, in_upper] = total.borders.map(|border| border[a] as usize);
+        sides.offer(lower[a], 0, in_lower, own.len() - in_lower, &mut best);
+        sweep(&axes[a], &total.axes[a], own.len(), &sides, &mut best);
+        sides.offer(upper[a], own.len() - in_upper, in_upper, 0, &mut best);
     }
     best
 }
 
-/// One sweep over the borders of an axis. Both sides' areas are linear in the plane's coordinate.
+/// One sweep over the planes between an axis's bins. Both sides' areas are linear in the plane's coordinate.
 fn sweep(axis: &Axis, counts: &Counts, triangles: usize, sides: &Sides, best: &mut Option<Split>) {
     let (mut left, mut right) = (0, triangles);
     for bin in 1..axis.bins {
         left += counts.begin[bin - 1] as usize;
         right -= counts.end[bin - 1] as usize;
         let planar = counts.planar[bin] as usize;
-        // Boxes in the plane have ended below it without having begun: they are on neither side yet.
-        sides.offer(axis.planes[bin], left, planar, right, best);
+        // Of planes that round to the same coordinate only the last has counted all that ends or lies there.
+        if axis.planes[bin] < axis.planes[bin + 1] {
+            // Boxes in the plane have ended below it without having begun: they are on neither side yet.
+            sides.offer(axis.planes[bin], left, planar, right, best);
+        }
     }
 }
 

@@ -13,12 +13,13 @@ use super::{Record, prims::record};
 use crate::error::{Error, Result};
 use crate::math::Aabb;
 use crate::scene::Scene;
+use glam::{BVec4A, Vec4};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// No tree is deeper than this, whatever is set.
 pub const MAX_DEPTH: u32 = 60;
 
-/// Most leaves and records together: links have 30 bits, and a device's buffers are smaller still.
+/// Most leaves and records together, whatever the scene: links have 30 bits, and a device's buffers are smaller still.
 pub const MAX_LEAVES_AND_RECORDS: usize = 1 << 28;
 
 /// Sides with fewer triangles than this together are built one after the other.
@@ -29,18 +30,42 @@ const TASK: usize = 2048;
 pub struct Config {
     /// Bins per axis in the upper levels, 2 to 64.
     pub bins: usize,
+    /// What the bins are spread over.
+    pub spread: Spread,
     /// Nodes with fewer triangles are split by the exact sweep.
     pub exact_below: usize,
     /// `K_t` and `K_i`.
     pub cost: CostModel,
+    /// Nodes of at most so many triangles are leaves, whatever their splits would cost.
+    pub small_leaf: usize,
     /// Greatest depth, at most [`MAX_DEPTH`]; `None` is `8 + 1.3 log2(triangles)`.
     pub max_depth: Option<u32>,
+    /// Thinnest slice that a split may cut off, as a share of the scene's diagonal. No cell is flat with zero, either,
+    /// unless the scene is.
+    pub thin: f32,
+}
+
+/// What the bins of a node are spread over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Spread {
+    /// The node's cell.
+    Cell,
+    /// What the triangles' boxes take up of the cell. The borders of that are candidates as well.
+    Content,
 }
 
 impl Default for Config {
     /// What explains the published trees best.
     fn default() -> Self {
-        Config { bins: 32, exact_below: 256, cost: CostModel::default(), max_depth: None }
+        Config {
+            bins: 32,
+            spread: Spread::Content,
+            exact_below: 129,
+            cost: CostModel::default(),
+            small_leaf: 2,
+            max_depth: Some(MAX_DEPTH),
+            thin: 2.0e-6,
+        }
     }
 }
 
@@ -59,20 +84,16 @@ pub(super) struct Split {
     pub weighted: f64,
 }
 
-/// Thinnest slice that a split may cut off, as a share of the scene's diagonal. A ray's distances to the two sides of a
-/// thinner one round to the same number if it comes from far away, and a restart cannot visit a cell without length
-/// (SPEC section 3). From eight diagonals away, distances are still four times as fine. Ten times as much would cost the
-/// robots 5 % of their leaves: small, finely made figures in a large city.
-const THINNEST: f32 = 2.0e-6;
-
 /// Rules and budget, shared by all threads.
 pub(super) struct Builder {
     pub config: Config,
     pub max_depth: u32,
-    /// No cell is cut thinner than this, see [`THINNEST`].
+    /// No slice is cut off that is thinner than this.
     pub thin: f32,
-    /// So few triangles cost no more than a step.
+    /// So few triangles are a leaf: they cost no more than a step, or are not to be split.
     never_split: usize,
+    /// Most leaves and records.
+    pub limit: usize,
     spent: AtomicUsize,
 }
 
@@ -96,11 +117,12 @@ impl Builder {
 
     /// True if the tree has become too large: whatever is still built is thrown away.
     pub fn is_broke(&self) -> bool {
-        self.spent.load(Relaxed) > MAX_LEAVES_AND_RECORDS
+        self.spent.load(Relaxed) > self.limit
     }
 
-    /// Builds the subtree of the triangles `own` (numbers in `prims`, ascending).
-    fn grow(&self, prims: &[Prim], own: Vec<u32>, cell: Aabb, depth: u32) -> Part {
+    /// Builds the subtree of some triangles.
+    fn grow(&self, prims: &[Prim], side: Side, cell: Aabb, depth: u32) -> Part {
+        let Side { own, content } = side;
         let count = own.len();
         if count < self.config.exact_below {
             let prims: Vec<Prim> = own.iter().map(|&i| prims[i as usize]).collect();
@@ -109,7 +131,7 @@ impl Builder {
         let split = if self.must_stop(count, depth) || self.is_broke() {
             None
         } else {
-            kdtree_bins::find(prims, &own, &cell, self.config.bins, self.thin)
+            kdtree_bins::find(prims, &own, &cell, &self.over(&cell, content), self.config.bins, self.thin)
                 .filter(|split| self.pays(count, split.weighted, half_area(&cell)))
         };
         let Some(split) = split else {
@@ -124,27 +146,51 @@ impl Builder {
         let parts = if split.left + split.right > TASK { rayon::join(a, b) } else { (a(), b()) };
         Part::Inner(split.axis, split.plane, Box::new(parts))
     }
+
+    /// What a node's bins are spread over.
+    fn over(&self, cell: &Aabb, content: Aabb) -> Aabb {
+        match self.config.spread {
+            Spread::Cell => *cell,
+            Spread::Content => Aabb { min: content.min.max(cell.min), max: content.max.min(cell.max) },
+        }
+    }
+}
+
+/// The triangles of a node.
+struct Side {
+    /// Numbers in the list of all, ascending.
+    own: Vec<u32>,
+    /// The box around their boxes, which may reach out of the node's cell.
+    content: Aabb,
 }
 
 /// Both sides' triangles, in their order. Every triangle is written to both, and only the sides that it belongs to
-/// advance (each has room for one more): no branch to mispredict.
-fn divide(prims: &[Prim], own: &[u32], split: &Split) -> (Vec<u32>, Vec<u32>) {
+/// advance (each has room for one more) and grow: no branch to mispredict.
+fn divide(prims: &[Prim], own: &[u32], split: &Split) -> (Side, Side) {
     let Split { axis, plane, planar_left, .. } = *split;
     let (mut left, mut right) = (vec![0; split.left + 1], vec![0; split.right + 1]);
     let (mut left_count, mut right_count) = (0, 0);
+    let mut around = [(Vec4::INFINITY, Vec4::NEG_INFINITY); 2];
     for &i in own {
         let prim = &prims[i as usize];
         let (min, max) = (prim.min[axis], prim.max[axis]);
         let planar = (min == plane) & (max == plane);
         left[left_count] = i;
         right[right_count] = i;
-        left_count += usize::from((min < plane) | (planar & planar_left));
-        right_count += usize::from((max > plane) | (planar & !planar_left));
+        let goes = [(min < plane) | (planar & planar_left), (max > plane) | (planar & !planar_left)];
+        left_count += usize::from(goes[0]);
+        right_count += usize::from(goes[1]);
+        for (around, goes) in around.iter_mut().zip(goes) {
+            let goes = BVec4A::splat(goes);
+            around.0 = around.0.min(Vec4::select(goes, prim.min, Vec4::INFINITY));
+            around.1 = around.1.max(Vec4::select(goes, prim.max, Vec4::NEG_INFINITY));
+        }
     }
     debug_assert_eq!((left_count, right_count), (split.left, split.right));
     left.truncate(split.left);
     right.truncate(split.right);
-    (left, right)
+    let [of_left, of_right] = around.map(|(min, max)| Aabb { min: min.truncate(), max: max.truncate() });
+    (Side { own: left, content: of_left }, Side { own: right, content: of_right })
 }
 
 /// The cells on both sides of a plane.
@@ -226,25 +272,70 @@ impl KdNode {
     }
 }
 
-/// Builds a kd-tree over all triangles that can be hit, on the threads of the current rayon pool.
-pub fn build(scene: &Scene, config: &Config) -> Result<KdTree> {
+/// Most leaves and records of the tree over so many triangles. The published trees have at most ten per triangle. Where
+/// long triangles cross in a plane, splits that pay in the model double the records from level to level.
+fn limit(triangles: usize) -> usize {
+    (256 * triangles).min((1 << 26).max(32 * triangles)).clamp(1 << 16, MAX_LEAVES_AND_RECORDS)
+}
+
+/// The depth to try after one that made the tree too large.
+fn shallower(depth: u32, triangles: usize) -> u32 {
+    (depth * 3 / 4).min(automatic(triangles))
+}
+
+/// The depth that is given in the literature: `8 + 1.3 log2(triangles)`.
+fn automatic(triangles: usize) -> u32 {
+    (8.0 + 1.3 * (triangles.max(1) as f64).log2()).round() as u32
+}
+
+/// A kd-tree, and the depth that it was kept to.
+pub struct KdBuilt {
+    /// The tree.
+    pub tree: KdTree,
+    /// The greatest depth that it could have had.
+    pub max_depth: u32,
+    /// True if that is less than was asked for, since a deeper tree would have been too large.
+    pub cut: bool,
+}
+
+/// Builds a kd-tree over all triangles that can be hit, on the threads of the current rayon pool. Where it would take
+/// excessive memory it is built again, less deep.
+///
+/// # Errors
+/// [`Error::Input`] if there are more triangles than a tree can hold.
+pub fn build(scene: &Scene, config: &Config) -> Result<KdBuilt> {
     let (prims, bounds) = prims::prims(scene)?;
-    let automatic = (8.0 + 1.3 * (prims.len().max(1) as f64).log2()).round() as u32;
-    let max_depth = config.max_depth.unwrap_or(automatic).min(MAX_DEPTH);
-    let never_split = (config.cost.traversal / config.cost.intersection) as usize;
-    let thin = bounds.diagonal() * THINNEST;
-    let builder = Builder { config: *config, max_depth, thin, never_split, spent: AtomicUsize::new(0) };
-    let part = builder.grow(&prims, (0..prims.len() as u32).collect(), bounds, 0);
-    if builder.is_broke() {
-        return Err(Error::argument(
-            format!("kdtree over {}", scene.name),
-            format!("takes more than {MAX_LEAVES_AND_RECORDS} leaves and records"),
-            "set a higher kt or a smaller max_depth",
-        ));
-    }
+    let never_split = ((config.cost.traversal / config.cost.intersection) as usize).max(config.small_leaf);
+    let asked = config.max_depth.unwrap_or(automatic(prims.len())).min(MAX_DEPTH);
+    let mut builder = Builder {
+        config: *config,
+        max_depth: asked,
+        thin: bounds.diagonal() * config.thin,
+        never_split,
+        limit: limit(prims.len()),
+        spent: AtomicUsize::new(0),
+    };
+    let part = loop {
+        let all = Side { own: (0..prims.len() as u32).collect(), content: bounds };
+        let part = builder.grow(&prims, all, bounds, 0);
+        if !builder.is_broke() {
+            break part;
+        }
+        if builder.max_depth == 0 {
+            return Err(Error::argument(
+                format!("kdtree over {}", scene.name),
+                format!("takes more than {MAX_LEAVES_AND_RECORDS} leaves and records"),
+                "use a smaller scene",
+            ));
+        }
+        drop(part);
+        builder.max_depth = shallower(builder.max_depth, prims.len());
+        builder.spent = AtomicUsize::new(0);
+    };
     let (node_count, record_count, depth) = part.size();
     let mut nodes = vec![KdNode::leaf(0, 0); node_count];
     let mut records = vec![Record { vertices: [0; 3], triangle: 0 }; record_count];
     part.place(scene, &mut nodes, &mut records, 0, 0);
-    Ok(KdTree { bounds, nodes, records, depth })
+    let tree = KdTree { bounds, nodes, records, depth };
+    Ok(KdBuilt { tree, max_depth: builder.max_depth, cut: builder.max_depth < asked })
 }

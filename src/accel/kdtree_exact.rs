@@ -6,7 +6,7 @@
 
 use super::kdtree::KdNode;
 use super::kdtree_bins::Areas;
-use super::kdtree_build::{Builder, MAX_LEAVES_AND_RECORDS, Subtree, halves};
+use super::kdtree_build::{Builder, Subtree, halves};
 use super::kdtree_events::{
     END, Event, PLANAR, SPARE, START, begun, careful_sweep, coordinate, event, kind, local, ordered, restored, starts,
     sweep,
@@ -161,7 +161,7 @@ impl Sweep<'_> {
     }
 
     fn leaf(&mut self, node: &Node) {
-        self.broke |= self.size() > MAX_LEAVES_AND_RECORDS;
+        self.broke |= self.size() > self.builder.limit;
         let locals = node.locals.of(&self.locals);
         self.out.nodes.push(KdNode::leaf(self.out.triangles.len() as u32, locals.len() as u32));
         self.out.triangles.extend(locals.iter().map(|&l| self.prims[l as usize].triangle()));

@@ -21,6 +21,7 @@ pub mod memory;
 pub mod method;
 pub mod octants;
 pub mod ploc;
+mod ploc_passes;
 pub mod prims;
 mod properties;
 mod registry;

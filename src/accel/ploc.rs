@@ -4,7 +4,9 @@
 //! for BVH Optimization, 2018. The presets are obvhs's own.
 
 use super::bvh::{Bvh, BvhNode, MAX_DEPTH, MAX_LEAF};
-use super::prims;
+use super::ploc_passes;
+use super::prims::{self, Prim};
+use super::sah::unit;
 use crate::error::Result;
 use crate::math::Aabb;
 use crate::scene::Scene;
@@ -41,11 +43,29 @@ pub fn preset(name: &str) -> Option<BvhBuildParams> {
     Some(BvhBuildParams { max_prims_per_leaf: params.max_prims_per_leaf.min(MAX_LEAF), ..params })
 }
 
-/// Builds a BVH over all triangles that can be hit, on the threads of the current rayon pool.
-pub fn build(scene: &Scene, params: BvhBuildParams) -> Result<Bvh> {
+/// PLOC's passes may look at so many nodes for each triangle, and at so many besides. Usual scenes take 3 for each; 137 ns a
+/// look (search distance 14, one thread) are the third of a second besides.
+const LOOKS_PER_TRIANGLE: u64 = 12;
+const LOOKS_BESIDES: u64 = 1 << 21;
+
+/// True if obvhs's time would grow with the square of the number of triangles (see [`ploc_passes`]).
+fn is_endless(prims: &[Prim], bounds: &Aabb) -> bool {
+    let most = LOOKS_PER_TRIANGLE * prims.len() as u64 + LOOKS_BESIDES;
+    ploc_passes::looks(prims, bounds, unit(bounds), most) > most
+}
+
+/// Builds a BVH over all triangles that can be hit, on the threads of the current rayon pool; `None` where PLOC would take
+/// excessive time, as it does over many boxes that are equal, in a row or inside each other.
+///
+/// # Errors
+/// [`crate::Error::Input`] if there are more triangles than a structure can hold.
+pub fn build(scene: &Scene, params: BvhBuildParams) -> Result<Option<Bvh>> {
     let (prims, bounds) = prims::prims(scene)?;
     if prims.is_empty() {
-        return Ok(Bvh { bounds, nodes: vec![BvhNode::NONE; 2], records: Vec::new(), depth: 0 });
+        return Ok(Some(Bvh { bounds, nodes: vec![BvhNode::NONE; 2], records: Vec::new(), depth: 0 }));
+    }
+    if is_endless(&prims, &bounds) {
+        return Ok(None);
     }
     // obvhs multiplies extents in f32: it gets the scene scaled to about 1, and only the tree is taken from it.
     let scale = scale(&bounds);
@@ -70,7 +90,7 @@ pub fn build(scene: &Scene, params: BvhBuildParams) -> Result<Bvh> {
     };
     copy.heights = copy.heights();
     copy.nodes[0] = copy.node(0, 0);
-    Ok(Bvh { bounds, nodes: copy.nodes, records: copy.records, depth: copy.depth })
+    Ok(Some(Bvh { bounds, nodes: copy.nodes, records: copy.records, depth: copy.depth }))
 }
 
 /// A power of two that brings the largest coordinate near 1.

@@ -1,5 +1,6 @@
 //! What `--structure` can name: every pair of builder and traversal, with its options. One row per variant.
 
+use super::kdtree_build::Spread;
 use super::method::{KdSearch, MAX_SHORT_STACK, Vote};
 use super::sah::CostModel;
 use super::selection::Selection;
@@ -28,7 +29,20 @@ pub struct VariantInfo {
     pub(super) builder: &'static str,
     /// False for builders that use one thread whatever they are given.
     pub(super) parallel: bool,
-    pub(super) build: fn(&Selection, &Scene) -> Result<Structure>,
+    pub(super) build: fn(&Selection, &Scene) -> Result<Made>,
+}
+
+/// What a builder makes.
+pub(super) struct Made {
+    pub structure: Structure,
+    /// How it was built where not as selected; empty otherwise.
+    pub note: String,
+}
+
+impl From<Structure> for Made {
+    fn from(structure: Structure) -> Made {
+        Made { structure, note: String::new() }
+    }
 }
 
 impl VariantInfo {
@@ -109,18 +123,36 @@ const GRID_OPTIONS: &[OptionInfo] = &[
 const KD_OPTIONS: &[OptionInfo] = &[
     OptionInfo { key: "bins", default: "32", meaning: "bins per axis in the upper levels", kind: Kind::Count(2, 64) },
     OptionInfo {
+        key: "spread",
+        default: "content",
+        meaning: "bins divide a node's cell, or what its triangles take up of that (content: whose borders may be planes, too)",
+        kind: Kind::Word(&["content", "cell"]),
+    },
+    OptionInfo {
         key: "exact_below",
-        default: "256",
+        default: "129",
         meaning: "nodes with fewer triangles are split by the exact sweep",
         kind: Kind::Count(0, 1 << 29),
     },
     OptionInfo { key: "kt", default: "1", meaning: "cost of a traversal step", kind: Kind::Number(0.0, 1e6) },
     OptionInfo { key: "ki", default: "1", meaning: "cost of a triangle test", kind: Kind::Number(1e-6, 1e6) },
     OptionInfo {
+        key: "small_leaf",
+        default: "2",
+        meaning: "nodes of at most so many triangles are leaves",
+        kind: Kind::Count(0, 1 << 20),
+    },
+    OptionInfo {
         key: "max_depth",
-        default: "auto",
-        meaning: "greatest depth; auto is 8 + 1.3 log2(triangles)",
+        default: "60",
+        meaning: "greatest depth, auto is 8 + 1.3 log2(triangles); less where that would take excessive memory",
         kind: Kind::CountOrAuto(0, kdtree_build::MAX_DEPTH),
+    },
+    OptionInfo {
+        key: "thin",
+        default: "0.000002",
+        meaning: "thinnest slice that a split may cut off, as a share of the scene's diagonal",
+        kind: Kind::Number(0.0, 1.0),
     },
 ];
 
@@ -262,7 +294,7 @@ pub fn variants() -> &'static [VariantInfo] {
         VariantInfo {
             name: "ploc-stack",
             alias: "",
-            summary: "BVH built by obvhs (PLOC with reinsertion), one ray per thread with a stack of its own",
+            summary: "BVH built by obvhs (PLOC with reinsertion; as bvh where that takes too long), a stack per ray",
             paper: "Meister and Bittner 2018",
             build_options: &[OptionInfo {
                 key: "preset",
@@ -310,14 +342,14 @@ pub fn variants() -> &'static [VariantInfo] {
             traversal: |_| Traversal::Brute,
             builder: "brute",
             parallel: true,
-            build: |_, scene| brute::build(scene).map(Structure::Brute),
+            build: |_, scene| Ok(Structure::Brute(brute::build(scene)?).into()),
         },
     ];
     VARIANTS
 }
 
-fn build_grid(s: &Selection, scene: &Scene) -> Result<Structure> {
-    grid_build::build(scene, &grid(s)).map(Structure::Grid)
+fn build_grid(s: &Selection, scene: &Scene) -> Result<Made> {
+    Ok(Structure::Grid(grid_build::build(scene, &grid(s))?).into())
 }
 
 fn grid(s: &Selection) -> grid_build::Config {
@@ -336,19 +368,25 @@ fn cost(s: &Selection) -> CostModel {
     CostModel { traversal: s.number("kt"), intersection: s.number("ki") }
 }
 
-fn build_kdtree(s: &Selection, scene: &Scene) -> Result<Structure> {
+fn build_kdtree(s: &Selection, scene: &Scene) -> Result<Made> {
     let config = kdtree_build::Config {
         bins: s.size("bins"),
+        spread: if s.value("spread") == "cell" { Spread::Cell } else { Spread::Content },
         exact_below: s.size("exact_below"),
         cost: cost(s),
+        small_leaf: s.size("small_leaf"),
         max_depth: s.count("max_depth"),
+        thin: s.number("thin") as f32,
     };
-    kdtree_build::build(scene, &config).map(Structure::KdTree)
+    let built = kdtree_build::build(scene, &config)?;
+    let note = format!("max_depth={}: a deeper tree would take excessive memory", built.max_depth);
+    let note = if built.cut { note } else { String::new() };
+    Ok(Made { structure: Structure::KdTree(built.tree), note })
 }
 
-fn build_bvh(s: &Selection, scene: &Scene) -> Result<Structure> {
+fn build_bvh(s: &Selection, scene: &Scene) -> Result<Made> {
     let config = bvh_build::Config { bins: s.size("bins"), max_leaf: s.size("max_leaf"), cost: cost(s) };
-    bvh_build::build(scene, &config).map(Structure::Bvh)
+    Ok(Structure::Bvh(bvh_build::build(scene, &config)?).into())
 }
 
 fn kd_search(s: &Selection) -> Traversal {
@@ -364,9 +402,15 @@ fn vote(s: &Selection) -> Traversal {
     Traversal::Bvh(if s.value("vote") == "original" { Vote::Original } else { Vote::Corrected })
 }
 
-fn build_ploc(s: &Selection, scene: &Scene) -> Result<Structure> {
+fn build_ploc(s: &Selection, scene: &Scene) -> Result<Made> {
     let params = ploc::preset(s.value("preset")).expect("the table lists the presets");
-    ploc::build(scene, params).map(Structure::Bvh)
+    if let Some(bvh) = ploc::build(scene, params)? {
+        return Ok(Structure::Bvh(bvh).into());
+    }
+    let bvh = bvh_build::build(scene, &bvh_build::Config::default())?;
+    let note =
+        "built as bvh: PLOC would take excessive time over so many boxes that are equal, in a row or inside each other";
+    Ok(Made { structure: Structure::Bvh(bvh), note: note.to_owned() })
 }
 
 impl Kind {

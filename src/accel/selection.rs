@@ -2,7 +2,7 @@
 
 use super::Structure;
 use super::method::{Fetch, Group, Method, Pattern, ShadowRays};
-use super::registry::{OptionInfo, VariantInfo, variants};
+use super::registry::{Made, OptionInfo, VariantInfo, variants};
 use crate::error::{Error, Result};
 use crate::intersect::TriangleTest;
 use crate::scene::Scene;
@@ -27,6 +27,8 @@ pub struct Built {
     pub build_ms: f64,
     /// Threads that the builder could use.
     pub build_threads: usize,
+    /// How it was built where not as selected; empty otherwise.
+    pub note: String,
 }
 
 impl Selection {
@@ -117,9 +119,9 @@ impl Selection {
         let pool = threads::pool(if self.info().parallel { threads } else { 1 })?;
         pool.install(|| {
             let start = Instant::now();
-            let structure = (self.info().build)(self, scene)?;
+            let Made { structure, note } = (self.info().build)(self, scene)?;
             let build_ms = start.elapsed().as_secs_f64() * 1e3;
-            Ok(Built { structure, build_ms, build_threads: rayon::current_num_threads() })
+            Ok(Built { structure, build_ms, build_threads: rayon::current_num_threads(), note })
         })
     }
 

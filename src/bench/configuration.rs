@@ -16,6 +16,7 @@ use crate::results::record::{
 use crate::results::{files, picture};
 use crate::scene::Scene;
 use std::collections::HashMap;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// The small image on which kernels are compared with their twins: not a multiple of the 8x8 pixels of a work-group, so
@@ -53,7 +54,7 @@ impl Context<'_> {
 /// A scene and what belongs to it.
 pub struct Subject<'s> {
     /// The scene.
-    pub scene: &'s Scene,
+    pub scene: &'s Arc<Scene>,
     /// For the record.
     pub record: SceneRecord,
     /// As the plan names it.
@@ -137,6 +138,7 @@ pub fn structure_record(subject: &Subject, selection: &Selection, built: &Built)
         build_ms: built.build_ms,
         build_threads: built.build_threads,
         memory: Memory::default(),
+        note: built.note.clone(),
     }
 }
 

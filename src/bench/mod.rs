@@ -2,6 +2,7 @@
 //! in build statistics) is a clock read. What is measured leaves as [`crate::results`] records and nothing else.
 
 pub mod batch;
+pub mod building;
 pub mod configuration;
 pub mod environment;
 pub mod measure;

@@ -2,6 +2,7 @@
 //! in turn with the other structures ([`super::batch`]); its records are on the disk before the next one begins.
 
 use super::batch::{Member, Place};
+use super::building;
 use super::configuration::{self, Candidate, Context, Subject};
 use super::environment;
 use super::pictures;
@@ -19,6 +20,7 @@ use crate::results::statistics;
 use crate::results::summary::Run;
 use crate::scene::Scene;
 use std::collections::{HashMap, VecDeque};
+use std::sync::Arc;
 
 /// Structures are built until so many bytes wait to be brought to the device together.
 const BATCH_BYTES: u64 = 512 << 20;
@@ -35,6 +37,8 @@ pub struct Opened {
 pub enum Event<'a> {
     /// Something is being done that takes a moment.
     Doing(String),
+    /// A structure is being built.
+    Building(String),
     /// A structure is built.
     Built(&'a StructureRecord),
     /// This much of the planned work (see [`Plan::work`]) is behind us.
@@ -163,7 +167,7 @@ impl Sweep<'_, '_> {
         self.context.check_interrupt()?;
         let plan = self.context.plan;
         self.say(Event::Doing(format!("loading {what}")));
-        let scene = plan.load(what)?;
+        let scene = Arc::new(plan.load(what)?);
         for warning in &scene.warnings {
             self.say(Event::Note(format!("{}: {warning}", scene.name)));
         }
@@ -222,7 +226,6 @@ impl Sweep<'_, '_> {
             let own = if reference_key == first.build_key() {
                 None
             } else {
-                self.say(Event::Doing(format!("building {} of {}", first.name(), subject.record.name)));
                 match self.build(first, subject.scene) {
                     Ok(built) => Some(built),
                     // What cannot be built for this scene is no reason to leave the others unmeasured.
@@ -246,17 +249,22 @@ impl Sweep<'_, '_> {
     }
 
     /// Build a structure as often as the plan says; the time is the median.
-    fn build(&self, selection: &Selection, scene: &Scene) -> Result<Built> {
-        let mut built = selection.build(scene, self.threads)?;
+    fn build(&mut self, selection: &Selection, scene: &Arc<Scene>) -> Result<Built> {
+        self.say(Event::Building(format!("building {} of {}", selection.name(), scene.name)));
+        let build = || building::build(selection, scene, self.threads, self.context.interrupted);
+        let mut built = build()?;
         let mut times = vec![built.build_ms];
         for _ in 1..self.context.plan.builds {
             self.context.check_interrupt()?;
             // Never two of them at a time in memory
             drop(built);
-            built = selection.build(scene, self.threads)?;
+            built = build()?;
             times.push(built.build_ms);
         }
         built.build_ms = statistics::median(&times).unwrap_or(built.build_ms);
+        if !built.note.is_empty() {
+            self.say(Event::Note(format!("{} {}: {}", scene.name, selection.name(), built.note)));
+        }
         Ok(built)
     }
 

@@ -1,18 +1,24 @@
 //! `rtbench build`: structures alone.
 
+use super::interrupt;
 use super::library::LibraryArguments;
 use super::output;
+use super::progress::Building;
 use crate::accel::Selection;
+use crate::backend::Interrupted;
 use crate::bench::plan::{self, parse_list};
-use crate::bench::sweep;
+use crate::bench::{building, sweep};
 use crate::error::{Error, Result};
-use crate::results::record::StructureRecord;
+use crate::results::record::{SceneRecord, StructureRecord};
 use crate::results::statistics;
 use crate::results::summary::{self, StructureRow};
 use crate::results::{files, table};
+use crate::scene::Scene;
 use clap::Args;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 /// Build structures and report their properties, sizes and build times
 #[derive(Args, Debug)]
@@ -47,50 +53,76 @@ Examples:
       a build time to hold against another builder's
   rtbench build --scene stadium --structure grid,grid:factor=8 --validate --csv grids.csv";
 
-/// Runs the command.
+/// Runs the command. After Ctrl-C, which no build is waited for, what was built until then is reported.
 ///
 /// # Errors
-/// Of scene, structure or output.
+/// Of scene, structure or output, or [`Error::Interrupted`].
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     let selections = parse_list(&arguments.structure, Selection::parse)?;
     if !(1..=1000).contains(&arguments.runs) {
         return Err(Error::argument("--runs", format!("{} runs", arguments.runs), "give 1 to 1000"));
     }
-    let mut rows = Vec::new();
-    let mut broken = 0;
-    for what in &arguments.scene {
-        let scene = arguments.library.load(what)?;
-        let scene_record = plan::scene_record(&scene);
-        for selection in &selections {
-            let mut built = selection.build(&scene, arguments.threads)?;
-            let mut times = vec![built.build_ms];
-            for _ in 1..arguments.runs {
-                built = selection.build(&scene, arguments.threads)?;
-                times.push(built.build_ms);
-            }
-            if arguments.validate {
-                match built.structure.validate(&scene) {
-                    Ok(()) => output::note(&format!("{} {}: valid", scene.name, selection.name())),
-                    Err(problem) => {
-                        broken += 1;
-                        output::complain(&format!("{} {}: {problem}", scene.name, selection.name()));
-                    }
-                }
-            }
-            rows.push(StructureRow::new(&StructureRecord {
-                scene: scene_record.clone(),
-                structure: selection.name().to_string(),
-                variant: selection.variant(),
-                properties: built.structure.properties(&scene),
-                build_ms: statistics::median(&times).unwrap_or(built.build_ms),
-                build_threads: built.build_threads,
-                memory: sweep::memory(&built, &scene, None),
-            }));
+    let stop = interrupt::flag(|| {})?;
+    let mut job = Job { arguments, interrupted: &|| stop.load(Ordering::Relaxed), rows: Vec::new(), broken: 0 };
+    let ended = arguments.scene.iter().try_for_each(|what| job.scene(what, &selections));
+    if matches!(ended, Ok(()) | Err(Error::Interrupted)) && !(ended.is_err() && job.rows.is_empty()) {
+        output::print(&table::structures(&job.rows))?;
+        if let Some(path) = &arguments.csv {
+            files::replace(path, &summary::structures_csv(&job.rows)?)?;
         }
     }
-    output::print(&table::structures(&rows))?;
-    if let Some(path) = &arguments.csv {
-        files::replace(path, &summary::structures_csv(&rows)?)?;
+    ended.map(|()| ExitCode::from(u8::from(job.broken > 0)))
+}
+
+/// What is built, and what came of it.
+struct Job<'a> {
+    arguments: &'a Arguments,
+    interrupted: Interrupted<'a>,
+    rows: Vec<StructureRow>,
+    /// How many structures are not valid.
+    broken: usize,
+}
+
+impl Job<'_> {
+    fn scene(&mut self, what: &str, selections: &[Selection]) -> Result<()> {
+        let scene = Arc::new(self.arguments.library.load(what)?);
+        let record = plan::scene_record(&scene);
+        selections.iter().try_for_each(|selection| self.structure(&scene, &record, selection))
     }
-    Ok(ExitCode::from(u8::from(broken > 0)))
+
+    fn structure(&mut self, scene: &Arc<Scene>, record: &SceneRecord, selection: &Selection) -> Result<()> {
+        let name = format!("{} {}", scene.name, selection.name());
+        let running = Building::begin(&format!("{} of {}", selection.name(), scene.name));
+        let build = || building::build(selection, scene, self.arguments.threads, self.interrupted);
+        let mut built = build()?;
+        let mut times = vec![built.build_ms];
+        for _ in 1..self.arguments.runs {
+            built = build()?;
+            times.push(built.build_ms);
+        }
+        drop(running);
+        if !built.note.is_empty() {
+            output::note(&format!("{name}: {}", built.note));
+        }
+        if self.arguments.validate {
+            match built.structure.validate(scene) {
+                Ok(()) => output::note(&format!("{name}: valid")),
+                Err(problem) => {
+                    self.broken += 1;
+                    output::complain(&format!("{name}: {problem}"));
+                }
+            }
+        }
+        self.rows.push(StructureRow::new(&StructureRecord {
+            scene: record.clone(),
+            structure: selection.name().to_string(),
+            variant: selection.variant(),
+            properties: built.structure.properties(scene),
+            build_ms: statistics::median(&times).unwrap_or(built.build_ms),
+            build_threads: built.build_threads,
+            memory: sweep::memory(&built, scene, None),
+            note: built.note,
+        }));
+        Ok(())
+    }
 }

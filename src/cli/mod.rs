@@ -10,6 +10,7 @@ mod completions;
 mod device;
 mod devices;
 mod figures;
+mod interrupt;
 mod library;
 mod output;
 mod progress;

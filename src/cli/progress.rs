@@ -51,6 +51,11 @@ impl Progress {
                     bar.set_message(format!("{}/{}{} {what}", self.finished, self.rows, self.estimate()));
                 }
             }
+            Event::Building(what) => match &self.bar {
+                Some(_) => self.event(Event::Doing(what)),
+                None if self.quiet => {}
+                None => line(None, &what),
+            },
             Event::Built(_) => {}
             Event::Finished(record) => self.finished(record),
             Event::Kept(work) => {
@@ -113,6 +118,35 @@ impl Progress {
     /// Takes the bar away.
     pub fn end(&self) {
         if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// Says that a structure is being built: a clock that runs on a terminal, a line elsewhere. It ends when this is dropped.
+pub struct Building(Option<ProgressBar>);
+
+impl Building {
+    /// `what` is being built from now on.
+    pub fn begin(what: &str) -> Building {
+        let what = format!("building {what}");
+        if !std::io::stderr().is_terminal() {
+            line(None, &what);
+            return Building(None);
+        }
+        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+        let style =
+            ProgressStyle::with_template("{msg} {elapsed}").unwrap_or_else(|_| ProgressStyle::default_spinner());
+        bar.set_style(style);
+        bar.set_message(what);
+        bar.enable_steady_tick(Duration::from_millis(500));
+        Building(Some(bar))
+    }
+}
+
+impl Drop for Building {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.0 {
             bar.finish_and_clear();
         }
     }

@@ -1,6 +1,7 @@
 //! `rtbench render`: one frame as a picture.
 
 use super::device::{self, DeviceArguments};
+use super::interrupt;
 use super::library::LibraryArguments;
 use super::output;
 use crate::accel::Selection;
@@ -93,6 +94,7 @@ impl Heatmap {
 /// Whatever keeps it from making the picture.
 pub fn run(arguments: &Arguments) -> Result<()> {
     let selection = Selection::parse(&arguments.structure)?;
+    interrupt::at_once()?;
     let config = plan::parse_config(&arguments.config)?;
     let size = plan::parse_size(&arguments.resolution)?;
     arguments.device.check()?;

@@ -1,6 +1,7 @@
 //! `rtbench sweep`: the main job.
 
 use super::device::{self, DeviceArguments};
+use super::interrupt;
 use super::library::LibraryArguments;
 use super::output;
 use super::progress::Progress;
@@ -14,8 +15,7 @@ use crate::results::{files, journal, table};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 
 /// Measure every structure x ray configuration x resolution on scenes
 ///
@@ -102,7 +102,7 @@ Examples:
       without any GPU or driver
 
 In the folder of results: journal.jsonl (everything, one record per line), summary.csv, structures.csv, run.json.
-Ctrl-C ends a sweep in order: what was measured is kept, and `rtbench sweep --resume FOLDER` measures the rest. It goes
+Ctrl-C ends a sweep in order, also while a structure is built: what was measured is kept, and `rtbench sweep --resume FOLDER` measures the rest. It goes
 on only with the same build of the program on the same device, with scenes and camera paths that have not changed.";
 
 /// Runs the command.
@@ -184,7 +184,8 @@ fn measure(arguments: &Arguments, earlier: Earlier) -> Result<ExitCode> {
     };
 
     let mut progress = Progress::new(plan.configurations(), work, arguments.quiet);
-    let stop = ctrl_c(progress.teller())?;
+    let tell = progress.teller();
+    let stop = interrupt::flag(move || tell("stopping after this frame; Ctrl-C again ends at once"))?;
     let interrupted = || stop.load(Ordering::Relaxed);
     if earlier.settled() > 0 && !arguments.quiet {
         output::note(&format!("{} of {} rows are there already", earlier.settled(), plan.configurations()));
@@ -238,19 +239,4 @@ fn tell_where(out: &Path, error: &Error) {
 /// `results/TIME-DEVICE`.
 fn default_folder(device: &str) -> PathBuf {
     Path::new("results").join(format!("{}-{}", environment::now_for_file_name(), files::slug(device)))
-}
-
-/// A flag that Ctrl-C sets, and says so. The second Ctrl-C ends the program at once: the journal is on the disk anyway. The
-/// handler runs on a thread of its own, where printing is allowed.
-fn ctrl_c(tell: impl Fn(&str) + Send + 'static) -> Result<Arc<AtomicBool>> {
-    let flag = Arc::new(AtomicBool::new(false));
-    let set = Arc::clone(&flag);
-    ctrlc::set_handler(move || {
-        if set.swap(true, Ordering::Relaxed) {
-            std::process::exit(130);
-        }
-        tell("stopping after this frame; Ctrl-C again ends at once");
-    })
-    .map_err(|e| Error::Device(format!("cannot listen for Ctrl-C: {e}")))?;
-    Ok(flag)
 }

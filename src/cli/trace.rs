@@ -1,6 +1,7 @@
 //! `rtbench trace`: given rays, so that rtbench can be held against another engine.
 
 use super::device::{self, DeviceArguments};
+use super::interrupt;
 use super::library::LibraryArguments;
 use super::output;
 use crate::accel::Selection;
@@ -51,6 +52,7 @@ Examples:
 /// Whatever keeps it from tracing all rays.
 pub fn run(arguments: &Arguments) -> Result<()> {
     let selection = Selection::parse(&arguments.structure)?;
+    interrupt::at_once()?;
     arguments.device.check()?;
     files::keep(&arguments.out, [arguments.rays.as_path()].into_iter())?;
     let rays = rays::read(&arguments.rays)?;

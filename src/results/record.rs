@@ -163,6 +163,9 @@ pub struct StructureRecord {
     pub build_threads: usize,
     /// Its sizes.
     pub memory: Memory,
+    /// How it was built where not as its options say; absent otherwise.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub note: String,
 }
 
 /// Sizes in bytes.

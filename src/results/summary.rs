@@ -108,6 +108,9 @@ pub struct StructureRow {
     pub thesis_bytes: u64,
     pub triangles: u64,
     pub vertices: u64,
+    /// How the structure was built where not as its options say.
+    #[serde(default)]
+    pub note: String,
 }
 
 /// `run.json`: the provenance and all rows.
@@ -264,6 +267,7 @@ impl StructureRow {
             thesis_bytes: record.memory.thesis_bytes,
             triangles: record.scene.triangles,
             vertices: record.scene.vertices,
+            note: record.note.clone(),
         }
     }
 }

@@ -2,6 +2,7 @@
 //! the published numbers.
 
 mod broken;
+mod degenerate;
 mod registry;
 mod scenes;
 mod thesis;
@@ -12,7 +13,7 @@ use rtbench::accel::{Selection, Structure};
 use rtbench::scene::Scene;
 
 /// Every builder, with options that lead through other code.
-pub const SELECTIONS: [&str; 20] = [
+pub const SELECTIONS: [&str; 22] = [
     "grid",
     "grid:factor=1",
     "grid:x=5",
@@ -22,6 +23,8 @@ pub const SELECTIONS: [&str; 20] = [
     "kdtree:exact_below=16,bins=7",
     "kdtree:kt=0.2,max_depth=20",
     "kdtree:max_depth=0",
+    "kdtree:spread=cell,exact_below=256,small_leaf=0,max_depth=auto",
+    "kdtree:small_leaf=0,thin=0,kt=0.1,bins=64,exact_below=8",
     "bvh",
     "bvh:bins=2,max_leaf=1",
     "bvh:bins=32,max_leaf=15",

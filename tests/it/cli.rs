@@ -4,7 +4,7 @@ use rtbench::backend::Config;
 use rtbench::results::journal::{FILE_NAME, Journal};
 use rtbench::results::record::Status;
 use rtbench::results::summary::{Row, Run, StructureRow};
-use std::io::Write;
+use std::io::{BufRead, BufReader, Read, Write};
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
@@ -13,6 +13,9 @@ const PROGRAM: &str = env!("CARGO_BIN_EXE_rtbench");
 
 /// A sweep of a moment.
 const TINY: &str = "--backend cpu --scene scan:triangles=1000 --frames 2 --passes 2 --resolution 16";
+
+/// The same without its scene.
+const TINY_ROWS: &str = "--backend cpu --frames 2 --passes 2 --resolution 16";
 
 fn command(arguments: &str) -> Command {
     let mut command = Command::new(PROGRAM);
@@ -251,6 +254,94 @@ fn ctrl_c_in_the_middle() {
     let json: Run = serde_json::from_str(&std::fs::read_to_string(out.join("run.json")).unwrap()).unwrap();
     assert_eq!(json, Run::new(&journal));
     assert_eq!(std::fs::read_to_string(out.join("summary.csv")).unwrap().lines().count(), 2);
+}
+
+/// Starts the program, sends it Ctrl-C as soon as it has said a line that begins so, and waits for its end.
+#[cfg(unix)]
+fn interrupted_at(arguments: &str, line: &str) -> Output {
+    let mut child = command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut text = String::new();
+    let mut lines = BufReader::new(child.stderr.take().unwrap());
+    while !text.lines().any(|said| said.starts_with(line)) {
+        assert!(lines.read_line(&mut text).unwrap() > 0, "it ended without '{line}': {text}");
+    }
+    let killed = Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status().unwrap();
+    assert!(killed.success());
+    lines.read_to_string(&mut text).unwrap();
+    let mut output = child.wait_with_output().unwrap();
+    output.stderr = text.into_bytes();
+    assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
+    assert_eq!(stderr(&output).matches("rtbench: error: interrupted\n").count(), 1, "{}", stderr(&output));
+    assert!(!stderr(&output).contains("panicked"), "{}", stderr(&output));
+    output
+}
+
+/// A build that takes seconds, on one thread, inside code that cannot be interrupted.
+#[cfg(unix)]
+const LONG: &str = "--structure grid,ploc-stack:preset=very-slow --threads 1";
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_while_a_structure_is_built() {
+    let output = interrupted_at(
+        &format!("build --scene scan:triangles=300000 {LONG}"),
+        "rtbench: building ploc-stack of scan:triangles=300000",
+    );
+    // What was built before is reported
+    assert!(stdout(&output).contains(" grid "), "{}", stdout(&output));
+    assert!(!stdout(&output).contains("ploc-stack"), "the build was too fast: {}", stdout(&output));
+    let output = interrupted_at(
+        "render --backend cpu --scene scan:triangles=1000 --resolution 4096 --config PSR --threads 1 -o /dev/null",
+        "rtbench: device: ",
+    );
+    assert_eq!(stdout(&output), "");
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_while_a_sweep_builds() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    let arguments = format!(
+        "sweep --scene scan:triangles=1000 --scene scan:triangles=300000 {LONG} --backend cpu --frames 2 --passes 2 \
+         --resolution 16 --config P --out {}",
+        out.display()
+    );
+    let output = interrupted_at(&arguments, "rtbench: building ploc-stack of scan:triangles=300000");
+    let journal = Journal::read(&out.join(FILE_NAME)).unwrap();
+    assert!(journal.end.as_ref().unwrap().interrupted);
+    // Both rows of the small scene are there, none of the large one
+    assert_eq!(journal.configurations.len(), 2, "{}", stderr(&output));
+    assert_eq!(std::fs::read_to_string(out.join("summary.csv")).unwrap().lines().count(), 3);
+    let output = run(&format!("sweep --resume {}", out.display()));
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains("2 of 4 rows are there already"), "{}", stderr(&output));
+    let journal = Journal::read(&out.join(FILE_NAME)).unwrap();
+    assert_eq!(journal.configurations.len(), 4);
+    assert!(journal.end.as_ref().unwrap().complete);
+}
+
+/// In table, journal and CSV: a structure that was built otherwise than its name says.
+#[test]
+fn how_a_structure_was_built_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let [scene, out] = ["heap.obj", "run"].map(|name| folder.path().join(name));
+    let heap = format!("v 0 0 0\nv 1 0 0.1\nv 0 1 0\n{}", "f 1 2 3\n".repeat(3000));
+    std::fs::write(&scene, heap).unwrap();
+    let [scene, csv] = [scene.display().to_string(), folder.path().join("b.csv").display().to_string()];
+    let output = run(&format!("build --scene {scene} --structure bvh,ploc-stack --csv {csv}"));
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains("rtbench: heap ploc-stack: built as bvh: "), "{}", stderr(&output));
+    good(&format!("sweep --scene {scene} {TINY_ROWS} --structure bvh,ploc-stack --out {}", out.display()));
+    let journal = Journal::read(&out.join(FILE_NAME)).unwrap();
+    let notes: Vec<&str> = journal.structures.iter().map(|s| s.note.split(':').next().unwrap()).collect();
+    assert_eq!(notes, ["", "built as bvh"]);
+    for csv in [csv.into(), out.join("structures.csv")] {
+        let rows: Vec<StructureRow> =
+            csv::Reader::from_path(csv).unwrap().deserialize().collect::<Result<_, _>>().unwrap();
+        let notes: Vec<&str> = rows.iter().map(|row| row.note.split(':').next().unwrap()).collect();
+        assert_eq!(notes, ["", "built as bvh"]);
+    }
 }
 
 #[test]
