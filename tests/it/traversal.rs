@@ -78,7 +78,7 @@ fn names() -> Vec<&'static str> {
 }
 
 /// Ways to walk a structure other than each one's own.
-const OTHERS: [&str; 23] = [
+const OTHERS: [&str; 25] = [
     "kdtree:search=restart",
     "kdtree:search=pushdown",
     "kdtree:stack=1",
@@ -86,6 +86,8 @@ const OTHERS: [&str; 23] = [
     "kdtree:stack=2",
     "kdtree:stack=5,memory=private",
     "kdtree:stack=32",
+    "kdtree:thin=0,search=restart",
+    "kdtree:thin=0,stack=1",
     "bvh:vote=original",
     "bvh:packet=8x4",
     "bvh:packet=4x4,vote=original",
