@@ -16,6 +16,7 @@ pub mod mgf;
 pub mod normals;
 pub mod obj;
 mod options;
+pub mod placement;
 pub mod ply;
 pub mod polygon;
 pub mod procedural;
@@ -27,10 +28,12 @@ use crate::error::{Error, Result};
 use crate::math::{Aabb, Vertex};
 use bytemuck::{Pod, Zeroable};
 use extent::Extent;
-use glam::{Vec3, Vec3A};
+use glam::{DVec3, Vec3, Vec3A};
 pub use load::{at_time, has_no_time, load, load_in};
-pub use options::{MAX_SEGMENTS, Options, Up};
+pub use options::{MAX_SEGMENTS, Options, Origin, Up};
+pub use placement::Placement;
 pub use procedural::{Parameter, SceneInfo, list};
+use rayon::prelude::*;
 use std::path::Path;
 pub(crate) use suggest::did_you_mean;
 
@@ -43,20 +46,20 @@ pub const MAX_ELEMENTS: usize = 1 << 27;
 pub type Reader = fn(&Path, &Options) -> Result<Scene>;
 
 /// What BART's files heed.
-const AFF: &[&str] = &["time", "segments", "cones", "camera", "outside"];
+const AFF: &[&str] = &["time", "segments", "cones", "camera", "outside", "origin"];
 
 /// Readers by file extension (lower case), and which options they heed beside those that every file takes
 /// ([`Options::COMMON`]).
 pub const FORMATS: &[(&str, Reader, &[&str])] = &[
-    ("ply", |path, _| ply::read(path), &[]),
+    ("ply", ply::read, &["origin"]),
     ("aff", aff::read, AFF),
     ("nff", aff::read, AFF),
-    ("mgf", mgf::read, &["segments", "outside"]),
-    ("iv", inventor::read, &["segments", "outside"]),
-    ("wrl", inventor::read, &["segments", "outside"]),
-    ("obj", obj::read, &["lamp", "outside"]),
-    ("gltf", gltf::read, &["camera", "outside"]),
-    ("glb", gltf::read, &["camera", "outside"]),
+    ("mgf", mgf::read, &["segments", "outside", "origin"]),
+    ("iv", inventor::read, &["segments", "outside", "origin"]),
+    ("wrl", inventor::read, &["segments", "outside", "origin"]),
+    ("obj", obj::read, &["lamp", "outside", "origin"]),
+    ("gltf", gltf::read, &["camera", "outside", "origin"]),
+    ("glb", gltf::read, &["camera", "outside", "origin"]),
     // The cache of any of them
     (cache::EXTENSION, cache::read, &[]),
 ];
@@ -173,6 +176,8 @@ pub struct Scene {
     pub degenerate_triangles: usize,
     /// What the reader wants the user to know, one line each.
     pub warnings: Vec<String>,
+    /// Where all of this lies in the file: positions here are single precision near the origin, and users see the file's.
+    pub placement: Placement,
 }
 
 impl Scene {
@@ -253,7 +258,7 @@ impl Scene {
     }
 
     /// BLAKE3 of all that decides what is traced and shaded, hexadecimal: vertices, triangles, materials, lights and
-    /// background, each with its number. Equal on all machines with the same byte order.
+    /// background, each with its number, and the placement where there is one. Equal on all machines with the same byte order.
     pub fn content_hash(&self) -> String {
         let background = [self.background];
         let parts: [&[u8]; 5] = [
@@ -267,6 +272,12 @@ impl Scene {
         for part in parts {
             hasher.update(&(part.len() as u64).to_le_bytes());
             hasher.update(part);
+        }
+        // Cameras and rays are given in the file's coordinates: the same scene elsewhere is another one.
+        if !self.placement.is_identity() {
+            let Placement { offset, exponent } = self.placement;
+            offset.to_array().iter().for_each(|x| _ = hasher.update(&x.to_le_bytes()));
+            hasher.update(&exponent.to_le_bytes());
         }
         hasher.finalize().to_hex().to_string()
     }
@@ -291,6 +302,10 @@ impl Scene {
             return;
         }
         let turn = |v: Vec3| if up == Up::Z { Vec3::new(v.x, v.z, -v.y) } else { v };
+        let offset = self.placement.offset;
+        let turned = if up == Up::Z { DVec3::new(offset.x, offset.z, -offset.y) } else { offset };
+        // Adding zero makes -0 and 0 the same placement
+        self.placement.offset = turned * f64::from(scale) + DVec3::ZERO;
         for vertex in &mut self.vertices {
             vertex.position = turn(vertex.position) * scale;
             vertex.normal = turn(vertex.normal);
@@ -314,11 +329,20 @@ impl Scene {
         self.first_fault(extent).map_or(Ok(()), Err)
     }
 
-    /// Counts the triangles without area of a scene that has been checked.
-    fn count_degenerate(&mut self) {
+    /// Counts the triangles without area of a scene that has been checked. Returns the largest coordinate of all products of
+    /// two edges of a triangle.
+    fn count_degenerate(&mut self) -> f64 {
         let vertices = &self.vertices;
-        let degenerate = |t: &&Triangle| normals::is_degenerate(t.vertices.map(|v| vertices[v as usize].position));
-        self.degenerate_triangles = self.triangles.iter().filter(degenerate).count();
+        let normal = |t: &Triangle| normals::product(t.vertices.map(|v| vertices[v as usize].position));
+        let count = |(degenerate, largest): (usize, f64), triangle: &Triangle| {
+            let normal = normal(triangle);
+            (degenerate + usize::from(normal == DVec3::ZERO), largest.max(normal.abs().max_element()))
+        };
+        let both = |a: (usize, f64), b: (usize, f64)| (a.0 + b.0, a.1.max(b.1));
+        let chunks = self.triangles.par_chunks(1 << 14).map(|chunk| chunk.iter().fold((0, 0.0), count));
+        let (degenerate, largest) = chunks.reduce(|| (0, 0.0), both);
+        self.degenerate_triangles = degenerate;
+        largest
     }
 }
 
