@@ -50,7 +50,7 @@ pub fn load_in(what: &str, folder: Option<&Path>) -> Result<Scene> {
     let mut scene = procedural::build(what)?;
     let extent = Extent::of(&scene);
     scene.complete(extent).map_err(|(problem, mend)| Error::argument(what, problem, mend))?;
-    scene.count_degenerate();
+    scene.survey();
     Ok(scene)
 }
 
@@ -118,8 +118,7 @@ fn finish(mut scene: Scene, place: &str, options: &Options) -> Result<Scene> {
     let extent = Extent::of(&scene);
     let fault = |(problem, mend): (String, _)| Error::file(path, None, problem, mend);
     scene.complete(extent).map_err(fault)?;
-    let normal = scene.count_degenerate();
-    let bounds = placement::used_bounds(&scene);
+    let (bounds, normal) = scene.survey();
     scene.size_fault(bounds).map_or(Ok(()), |found| Err(fault(found)))?;
     scene.normalise(bounds, normal);
     // What is scaled may have left the range of floats

@@ -41,7 +41,8 @@ pub(crate) use suggest::did_you_mean;
 /// bits everywhere.
 pub const MAX_ELEMENTS: usize = 1 << 27;
 
-/// A reader: the scene in a file. It need not set `name`, nor `materials` if the format has none, nor count degenerate
+/// A reader: the scene in a file. From every position it subtracts [`Options::offset`] in double precision before it rounds,
+/// and says so in `placement`. It need not set `name`, nor `materials` if the format has none, nor count degenerate
 /// triangles; [`load`] does.
 pub type Reader = fn(&Path, &Options) -> Result<Scene>;
 
@@ -152,7 +153,7 @@ pub struct Pose {
     pub up: Vec3,
 }
 
-/// A scene as loaded. Invariants, kept by every reader (see [`Scene::check`]): at least one triangle, all indices in
+/// A scene as loaded, in the coordinates of memory. Invariants, kept by every reader (see [`Scene::check`]): at least one triangle, all indices in
 /// range, all positions and normals finite, at least one material.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
@@ -329,20 +330,23 @@ impl Scene {
         self.first_fault(extent).map_or(Ok(()), Err)
     }
 
-    /// Counts the triangles without area of a scene that has been checked. Returns the largest coordinate of all products of
-    /// two edges of a triangle.
-    fn count_degenerate(&mut self) -> f64 {
+    /// Counts the triangles without area of a scene that has been checked, and finds the box around all of them and the largest
+    /// coordinate of all products of two edges of a triangle.
+    fn survey(&mut self) -> (Aabb, f64) {
         let vertices = &self.vertices;
-        let normal = |t: &Triangle| normals::product(t.vertices.map(|v| vertices[v as usize].position));
-        let count = |(degenerate, largest): (usize, f64), triangle: &Triangle| {
-            let normal = normal(triangle);
-            (degenerate + usize::from(normal == DVec3::ZERO), largest.max(normal.abs().max_element()))
+        type Found = (usize, Aabb, f64);
+        let nothing: Found = (0, Aabb::EMPTY, 0.0);
+        let add = |(degenerate, bounds, largest): Found, triangle: &Triangle| {
+            let corners = triangle.vertices.map(|v| vertices[v as usize].position);
+            let normal = normals::product(corners);
+            let bounds = corners.iter().fold(bounds, |b, &p| Aabb { min: b.min.min(p), max: b.max.max(p) });
+            (degenerate + usize::from(normal == DVec3::ZERO), bounds, largest.max(normal.abs().max_element()))
         };
-        let both = |a: (usize, f64), b: (usize, f64)| (a.0 + b.0, a.1.max(b.1));
-        let chunks = self.triangles.par_chunks(1 << 14).map(|chunk| chunk.iter().fold((0, 0.0), count));
-        let (degenerate, largest) = chunks.reduce(|| (0, 0.0), both);
+        let both = |a: Found, b: Found| (a.0 + b.0, a.1.union(b.1), a.2.max(b.2));
+        let chunks = self.triangles.par_chunks(1 << 14).map(|chunk| chunk.iter().fold(nothing, add));
+        let (degenerate, bounds, normal) = chunks.reduce(|| nothing, both);
         self.degenerate_triangles = degenerate;
-        largest
+        (bounds, normal)
     }
 }
 

@@ -160,11 +160,23 @@ impl Bounds {
     }
 }
 
-/// How far a scene lies from the origin in memory, in diagonals; 0 where that says nothing.
+/// Triangles that are looked at where a few tell enough.
+const FEW: usize = 256;
+
+/// True if a few triangles of a part tell that the whole, which is placed as the part is, is not far from the origin: of a scene
+/// that is, every corner lies farther out than 63 of the scene's diagonals, which is more than 63 diagonals of those few.
+fn is_surely_near(part: &Scene) -> bool {
+    let few = part.triangles.iter().step_by(part.triangles.len() / FEW + 1);
+    let position = |v: u32| part.vertices.get(v as usize).map(|vertex| vertex.position);
+    let bounds = Aabb::from_points(few.flat_map(|t| t.vertices).filter_map(position));
+    !bounds.is_empty() && distance(bounds) < FAR - 2.0
+}
+
+/// How far a scene lies from the origin in memory, in diagonals; infinite for a point that is not there.
 pub(super) fn distance(bounds: Aabb) -> f64 {
     let bounds = Bounds { min: bounds.min.as_dvec3(), max: bounds.max.as_dvec3() };
-    let distance = bounds.reach() / (bounds.max - bounds.min).length();
-    if distance.is_finite() { distance } else { 0.0 }
+    let (reach, diagonal) = (bounds.reach(), (bounds.max - bounds.min).length());
+    if reach > 0.0 { reach / diagonal } else { 0.0 }
 }
 
 /// Where the parts of a scene, which were read with placements of their own, should have the origin instead; `None` if they
@@ -172,6 +184,9 @@ pub(super) fn distance(bounds: Aabb) -> f64 {
 pub(super) fn better_offset<'a>(parts: impl Iterator<Item = &'a Scene> + Clone) -> Option<DVec3> {
     let first = parts.clone().next()?.placement;
     let agree = parts.clone().all(|part| part.placement == first);
+    if agree && first.exponent == 0 && parts.clone().any(is_surely_near) {
+        return None;
+    }
     // Around the origin in memory if there is one, so that nothing is rounded
     let base = if agree { first.offset } else { DVec3::ZERO };
     let union = |a: Bounds, b: Bounds| Bounds { min: a.min.min(b.min), max: a.max.max(b.max) };

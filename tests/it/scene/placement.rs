@@ -707,6 +707,6 @@ fn the_surface_epsilon_follows_coordinates_where_they_are_large() {
         assert_eq!(surface_epsilon(bounds(at)), bounds(at).diagonal() * 1e-5, "{at}");
     }
     for at in [1e4, -1e6] {
-        assert_eq!(surface_epsilon(bounds(at)), (at.abs() + 1.0) / 1048576.0);
+        assert_eq!(surface_epsilon(bounds(at)), (at.abs() + 1.0) / 2097152.0);
     }
 }
