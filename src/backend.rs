@@ -78,9 +78,9 @@ pub fn surface_epsilon(bounds: Aabb) -> f32 {
     (bounds.diagonal() * 1.0e-5).max(reach * ROUNDINGS)
 }
 
-/// The surface epsilon beside the largest coordinate: eight times what rounding one of that size does (2^-24). Measured with a
-/// scene of curved surfaces and shadows, 400 to 4,000 diagonals away: acne ends at two roundings, and from sixteen on light
-/// comes through the seams of shadows.
+/// The surface epsilon beside the largest coordinate: eight times what rounding one of that size does (2^-24).
+/// Measured with a scene of curved surfaces and shadows, 400 to 4,000 diagonals away: acne ends at two roundings, and
+/// from sixteen on light comes through the seams of shadows.
 const ROUNDINGS: f32 = 8.0 / (1 << 24) as f32;
 
 /// Width and height of an image in pixels.
@@ -203,8 +203,8 @@ pub struct GivenRay {
 }
 
 impl GivenRay {
-    /// The ray with its direction scaled by a power of two, so that its largest component is 1 to 2 and no product of it
-    /// leaves the range of floats; and the exponent of that power. What has no length stays as it is.
+    /// The ray with its direction scaled by a power of two, so that its largest component is 1 to 2 and no product of
+    /// it leaves the range of floats; and the exponent of that power. What has no length stays as it is.
     pub fn unit(&self) -> (GivenRay, i32) {
         let largest = f64::from(self.direction.abs().max_element());
         if !(largest > 0.0 && largest.is_finite()) {
@@ -216,8 +216,8 @@ impl GivenRay {
     }
 }
 
-/// Traces given rays with directions of any length: `trace` is given ones of a length near 1, in the same order, and the
-/// distances that it finds are scaled back. `first` is the number of the first ray, for errors.
+/// Traces given rays with directions of any length: `trace` is given ones of a length near 1, in the same order, and
+/// the distances that it finds are scaled back. `first` is the number of the first ray, for errors.
 ///
 /// # Errors
 /// Those of `trace`; [`crate::Error::Input`] for a distance that is no float, since the direction is so short.
@@ -303,8 +303,8 @@ pub trait Prepared {
     /// the path: what was timed can so be checked.
     fn timed(&mut self) -> Result<Timed>;
 
-    /// Traces given rays, in the coordinates of the scene as it lies in memory: the nearest hit, or with `any_hit` whether anything is hit at all (`triangle` is 0 then, and
-    /// `t` is 0).
+    /// Traces given rays, in the coordinates of the scene as it lies in memory: the nearest hit, or with `any_hit`
+    /// whether anything is hit at all (`triangle` is 0 then, and `t` is 0).
     fn trace(&mut self, rays: &[GivenRay], any_hit: bool) -> Result<Vec<Hit>>;
 
     /// What the timed kernel is; `None` where nothing is compiled for a device.

@@ -96,7 +96,8 @@ impl Room {
         Room { bounds: scene.bounds(), placement: scene.placement }
     }
 
-    /// Where a path's point lies in memory: it is in units of the bounds, 0 to 1 per axis, or in the file's coordinates.
+    /// Where a path's point lies in memory: it is in units of the bounds, 0 to 1 per axis, or in the file's
+    /// coordinates.
     pub fn place(&self, point: DVec3, relative: bool) -> Vec3 {
         match relative {
             true => self.in_bounds(point.as_vec3()),

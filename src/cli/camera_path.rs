@@ -18,7 +18,8 @@ pub enum Command {
     /// Write a scene's camera path, frame by frame
     ///
     /// A file that ends in .csv gets a row per frame: frame, time, position, direction, up. Any other becomes a camera
-    /// path file that shows the same views again, to the bit. Positions are in the coordinates of the scene's file. A path whose light moves cannot be written.
+    /// path file that shows the same views again, to the bit. Positions are in the coordinates of the scene's file. A
+    /// path whose light moves cannot be written.
     Export {
         /// Scene file, or built-in scene with parameters
         #[arg(value_name = "FILE|NAME[:KEY=VALUE,..]")]

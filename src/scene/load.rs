@@ -128,8 +128,8 @@ fn finish(mut scene: Scene, place: &str, options: &Options) -> Result<Scene> {
     Ok(scene)
 }
 
-/// Most readings of a scene: a second one where it is far from the origin, further ones where its extent was lost in the
-/// rounding of the first.
+/// Most readings of a scene: a second one where it is far from the origin, further ones where its extent was lost in
+/// the rounding of the first.
 const READINGS: usize = 5;
 
 /// Reads one file, a folder, or files joined by `+`, and names the scene after them (without options).

@@ -41,9 +41,9 @@ pub(crate) use suggest::did_you_mean;
 /// bits everywhere.
 pub const MAX_ELEMENTS: usize = 1 << 27;
 
-/// A reader: the scene in a file. From every position it subtracts [`Options::offset`] in double precision before it rounds,
-/// and says so in `placement`. It need not set `name`, nor `materials` if the format has none, nor count degenerate
-/// triangles; [`load`] does.
+/// A reader: the scene in a file. From every position it subtracts [`Options::offset`] in double precision before it
+/// rounds, and says so in `placement`. It need not set `name`, nor `materials` if the format has none, nor count
+/// degenerate triangles; [`load`] does.
 pub type Reader = fn(&Path, &Options) -> Result<Scene>;
 
 /// What BART's files heed.
@@ -153,8 +153,8 @@ pub struct Pose {
     pub up: Vec3,
 }
 
-/// A scene as loaded, in the coordinates of memory. Invariants, kept by every reader (see [`Scene::check`]): at least one triangle, all indices in
-/// range, all positions and normals finite, at least one material.
+/// A scene as loaded, in the coordinates of memory. Invariants, kept by every reader (see [`Scene::check`]): at least
+/// one triangle, all indices in range, all positions and normals finite, at least one material.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     /// Short name: the file's stem or the procedural scene's name and parameters. Stands in every record.
@@ -177,7 +177,8 @@ pub struct Scene {
     pub degenerate_triangles: usize,
     /// What the reader wants the user to know, one line each.
     pub warnings: Vec<String>,
-    /// Where all of this lies in the file: positions here are single precision near the origin, and users see the file's.
+    /// Where all of this lies in the file: positions here are single precision near the origin, and users see the
+    /// file's.
     pub placement: Placement,
 }
 
@@ -259,7 +260,8 @@ impl Scene {
     }
 
     /// BLAKE3 of all that decides what is traced and shaded, hexadecimal: vertices, triangles, materials, lights and
-    /// background, each with its number, and the placement where there is one. Equal on all machines with the same byte order.
+    /// background, each with its number, and the placement where there is one. Equal on all machines with the same
+    /// byte order.
     pub fn content_hash(&self) -> String {
         let background = [self.background];
         let parts: [&[u8]; 5] = [
@@ -330,8 +332,8 @@ impl Scene {
         self.first_fault(extent).map_or(Ok(()), Err)
     }
 
-    /// Counts the triangles without area of a scene that has been checked, and finds the box around all of them and the largest
-    /// coordinate of all products of two edges of a triangle.
+    /// Counts the triangles without area of a scene that has been checked, and finds the box around all of them and
+    /// the largest coordinate of all products of two edges of a triangle.
     fn survey(&mut self) -> (Aabb, f64) {
         let vertices = &self.vertices;
         type Found = (usize, Aabb, f64);

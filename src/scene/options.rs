@@ -26,8 +26,8 @@ pub struct Options {
     pub fov: Option<f32>,
     /// Where the origin is put while the scene is in memory.
     pub origin: Origin,
-    /// What readers subtract from every position, in the file's coordinates; `None`: nothing, and a cache stays where it is.
-    /// [`super::load`] sets it by `origin`.
+    /// What readers subtract from every position, in the file's coordinates; `None`: nothing, and a cache stays where
+    /// it is. [`super::load`] sets it by `origin`.
     pub offset: Option<DVec3>,
     /// OBJ: the material that shines although the file does not say so (exporters lose it); its faces become lights.
     pub lamp: Option<String>,
@@ -46,7 +46,8 @@ pub enum Up {
 /// Where the origin is put while a scene is in memory, see [`super::Placement`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Origin {
-    /// Into the scene, if its coordinates are larger than [`super::placement::FAR`] diagonals; otherwise where the file has it.
+    /// Into the scene, if its coordinates are larger than [`super::placement::FAR`] diagonals; otherwise where the
+    /// file has it.
     #[default]
     Auto,
     /// Where the file has it, however far that is.

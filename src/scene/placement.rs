@@ -1,33 +1,36 @@
 //! Where a scene lies in memory, and where in its file.
 //!
-//! Vertices, lights and cameras are single precision, which is fine near the origin and coarse far from it: at 5,000,000 the
-//! next number is half a unit away. A scene far from its origin is therefore moved there while its file is read, in double
-//! precision, and rounded once. A scene whose extent is so small or so large that products of lengths would leave the range of
-//! floats is scaled by a power of two, which changes no bit of its shape. All that users see and give is in the file's
-//! coordinates; [`Placement`] leads from one to the other.
+//! Vertices, lights and cameras are single precision, which is fine near the origin and coarse far from it: at
+//! 5,000,000 the next number is half a unit away. A scene far from its origin is therefore moved there while its file
+//! is read, in double precision, and rounded once. A scene whose extent is so small or so large that products of
+//! lengths would leave the range of floats is scaled by a power of two, which changes no bit of its shape. All that
+//! users see and give is in the file's coordinates; [`Placement`] leads from one to the other.
 
 use super::Scene;
 use crate::math::Aabb;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-/// How many diagonals of a scene its coordinates may be away from the origin before the scene is moved there. Up to here
-/// rounding moves a coordinate by at most `2^-24 * 64` = 4e-6 of the diagonal, less than half of the surface epsilon (1e-5).
+/// How many diagonals of a scene its coordinates may be away from the origin before the scene is moved there. Up to
+/// here rounding moves a coordinate by at most `2^-24 * 64` = 4e-6 of the diagonal, less than half of the surface
+/// epsilon (1e-5).
 pub const FAR: f64 = 64.0;
 
 /// Coordinates beyond this are refused, and extents below its inverse.
 pub const MAX_COORDINATE: f64 = 1e18;
 
-/// Extents between these, 2^-20 and 2^34, stay as they are: products of three lengths, as tests of triangles have, are floats.
+/// Extents between these, 2^-20 and 2^34, stay as they are: products of three lengths, as tests of triangles have,
+/// are floats.
 const COMFORTABLE: std::ops::RangeInclusive<f64> = 1.0 / (1 << 20) as f64..=(1u64 << 34) as f64;
 
-/// The largest normal of a triangle (the product of two edges) that leaves the scene as it is: its square, of which shading
-/// takes the root, is at most 3 * 2^122, and floats end at 2^128. The smallest are no trouble: at an extent of 2^-20, triangles
-/// a thousand times smaller than the scene have squares of 2^-120, and normal floats begin at 2^-126.
+/// The largest normal of a triangle (the product of two edges) that leaves the scene as it is: its square, of which
+/// shading takes the root, is at most 3 * 2^122, and floats end at 2^128. The smallest are no trouble: at an extent
+/// of 2^-20, triangles a thousand times smaller than the scene have squares of 2^-120, and normal floats begin at
+/// 2^-126.
 const LARGEST_NORMAL: f64 = (1u64 << 61) as f64;
 
-/// A light of a scaled scene that is farther away than this, in units of about the scene's extent, is brought nearer in its
-/// direction: lights do not fade, the direction changes by 2^-40, and squares of distances stay in range.
+/// A light of a scaled scene that is farther away than this, in units of about the scene's extent, is brought nearer
+/// in its direction: lights do not fade, the direction changes by 2^-40, and squares of distances stay in range.
 const FARTHEST_LIGHT: f32 = (1u64 << 40) as f32;
 
 /// What leads from a file's coordinates (behind `up=` and `scale=`) to those in memory: `(file - offset) * 2^exponent`.
@@ -85,8 +88,8 @@ impl Placement {
         Placement { offset: DVec3::ZERO, ..*self }.coordinates(Vec3::splat(placed))[0]
     }
 
-    /// The point in memory that is read back where this one is written down in the file's coordinates: doubles far from the
-    /// origin do not hold the last bits of what lies near it.
+    /// The point in memory that is read back where this one is written down in the file's coordinates: doubles far
+    /// from the origin do not hold the last bits of what lies near it.
     pub fn snap(&self, placed: Vec3) -> Vec3 {
         if self.offset == DVec3::ZERO { placed } else { self.place(self.file(placed)) }
     }
@@ -118,7 +121,8 @@ pub fn number(x: f64) -> String {
     if x == 0.0 || (1e-7..1e16).contains(&x.abs()) { x.to_string() } else { format!("{x:e}") }
 }
 
-/// The box around all vertices that triangles use. Indices that lead nowhere, which nobody has looked for yet, are passed over.
+/// The box around all vertices that triangles use. Indices that lead nowhere, which nobody has looked for yet, are
+/// passed over.
 pub(super) fn used_bounds(scene: &Scene) -> Aabb {
     let corners = |t: &super::Triangle| {
         let position = |v: u32| scene.vertices.get(v as usize).map(|vertex| vertex.position);
@@ -146,8 +150,8 @@ impl Bounds {
         self.reach() > FAR * (self.max - self.min).length()
     }
 
-    /// Where to put the origin: near the middle, on axes whose coordinates are larger than the extent, at a multiple of a power
-    /// of two that is a quarter to a half of it, so that offsets are short numbers.
+    /// Where to put the origin: near the middle, on axes whose coordinates are larger than the extent, at a multiple
+    /// of a power of two that is a quarter to a half of it, so that offsets are short numbers.
     fn origin(&self) -> DVec3 {
         let (middle, extent) = ((self.min + self.max) * 0.5, (self.max - self.min).max_element());
         let step = if extent > 0.0 { power_of_two(exponent_of(extent) - 1) } else { 0.0 };
@@ -163,8 +167,9 @@ impl Bounds {
 /// Triangles that are looked at where a few tell enough.
 const FEW: usize = 256;
 
-/// True if a few triangles of a part tell that the whole, which is placed as the part is, is not far from the origin: of a scene
-/// that is, every corner lies farther out than 63 of the scene's diagonals, which is more than 63 diagonals of those few.
+/// True if a few triangles of a part tell that the whole, which is placed as the part is, is not far from the origin:
+/// of a scene that is, every corner lies farther out than 63 of the scene's diagonals, which is more than 63
+/// diagonals of those few.
 fn is_surely_near(part: &Scene) -> bool {
     let few = part.triangles.iter().step_by(part.triangles.len() / FEW + 1);
     let position = |v: u32| part.vertices.get(v as usize).map(|vertex| vertex.position);
@@ -179,8 +184,8 @@ pub(super) fn distance(bounds: Aabb) -> f64 {
     if reach > 0.0 { reach / diagonal } else { 0.0 }
 }
 
-/// Where the parts of a scene, which were read with placements of their own, should have the origin instead; `None` if they
-/// are well where they are.
+/// Where the parts of a scene, which were read with placements of their own, should have the origin instead; `None`
+/// if they are well where they are.
 pub(super) fn better_offset<'a>(parts: impl Iterator<Item = &'a Scene> + Clone) -> Option<DVec3> {
     let first = parts.clone().next()?.placement;
     let agree = parts.clone().all(|part| part.placement == first);
@@ -213,8 +218,8 @@ impl Scene {
         self.placement = placement;
     }
 
-    /// Scales a scene by a power of two if its extent in the file is not comfortable. `bounds` is the box around its triangles,
-    /// and `normal` the largest coordinate of the product of two of a triangle's edges.
+    /// Scales a scene by a power of two if its extent in the file is not comfortable. `bounds` is the box around its
+    /// triangles, and `normal` the largest coordinate of the product of two of a triangle's edges.
     pub(super) fn normalise(&mut self, bounds: Aabb, normal: f64) {
         let extent = self.placement.length(bounds.extent().max_element());
         if !(extent > 0.0 && extent.is_finite()) {
@@ -249,7 +254,8 @@ impl Scene {
         }
     }
 
-    /// What is wrong with the size of a scene, if something is: problem and mend. `bounds` is the box around its triangles.
+    /// What is wrong with the size of a scene, if something is: problem and mend. `bounds` is the box around its
+    /// triangles.
     pub(super) fn size_fault(&self, bounds: Aabb) -> Option<(String, &'static str)> {
         let [min, max] = [bounds.min, bounds.max].map(|corner| self.placement.file(corner));
         let reach = min.abs().max(max.abs()).max_element();

@@ -163,8 +163,8 @@ pub fn reseal(bytes: &mut [u8]) {
     start.copy_from_slice(bytemuck::bytes_of(&header));
 }
 
-/// Reads a cache: a scene that has gone through all checks. It has the placement that it was written with, or the one that
-/// is wanted.
+/// Reads a cache: a scene that has gone through all checks. It has the placement that it was written with, or the one
+/// that is wanted.
 ///
 /// # Errors
 /// [`Error::Input`]: no cache, or one that is stale, truncated or corrupt.

@@ -38,7 +38,8 @@ pub struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    /// Begins with the materials. `options` name the camera that is wanted, the first if none is, and the origin in memory.
+    /// Begins with the materials. `options` name the camera that is wanted, the first if none is, and the origin in
+    /// memory.
     pub fn new(
         document: &'a Document,
         buffers: &'a Buffers<'a>,

@@ -82,7 +82,8 @@ impl Frame {
         Frame { affine, normals: cofactors, mirrored: sign < 0.0, offset }
     }
 
-    /// A vertex where the transform puts it, rounded once it is near the origin; the normal is one that [`Frame::direction`] has turned.
+    /// A vertex where the transform puts it, rounded once it is near the origin; the normal is one that
+    /// [`Frame::direction`] has turned.
     #[inline(always)]
     fn place(&self, position: DVec3, normal: Vec3) -> Result<Vertex, Fault> {
         let position = self.affine.transform_point3(position);

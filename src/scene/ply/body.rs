@@ -35,8 +35,8 @@ pub struct Body {
 /// Where the values of a vertex go: index of the property of x, y, z, nx, ny, nz.
 const ROLES: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
 
-/// Reads the body. `list` is the index of the faces' list; `length` the number of the body's bytes; `offset` what positions
-/// are counted from, in double precision if there is one.
+/// Reads the body. `list` is the index of the faces' list; `length` the number of the body's bytes; `offset` what
+/// positions are counted from, in double precision if there is one.
 pub fn read<S: Source>(
     header: &Header,
     vertex: &Element,

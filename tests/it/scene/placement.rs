@@ -110,7 +110,8 @@ impl Mesh {
                 let kind = if format == "ascii.ply" { "ascii" } else { "binary_little_endian" };
                 let (bytes, list) = ("property double", "property list uchar int vertex_indices");
                 let mut header = format!(
-                    "ply\nformat {kind} 1.0\nelement vertex {n}\n{bytes} x\n{bytes} y\n{bytes} z\nelement face {m}\n{list}\nend_header\n"
+                    "ply\nformat {kind} 1.0\nelement vertex {n}\n{bytes} x\n{bytes} y\n{bytes} z\n\
+                    element face {m}\n{list}\nend_header\n"
                 );
                 if kind != "ascii" {
                     let mut file = header.into_bytes();
@@ -245,8 +246,8 @@ fn every_format_is_read_in_double_precision() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// A scene that is moved by up to ten million extents and scaled by a power of two is the same scene: vertices, pictures,
-    /// rays and distances, to the bit.
+    /// A scene that is moved by up to ten million extents and scaled by a power of two is the same scene: vertices,
+    /// pictures, rays and distances, to the bit.
     #[test]
     fn a_moved_and_scaled_scene_is_the_same(
         seed in 1u32..1000,
@@ -282,7 +283,8 @@ proptest! {
             .collect();
         let moved: Vec<ExactRay> = rays
             .iter()
-            .map(|ray| ExactRay { origin: (ray.origin.as_dvec3() + shift) * scale, direction: ray.direction.as_dvec3() })
+            .map(|GivenRay { origin, direction }| [origin.as_dvec3(), direction.as_dvec3()])
+            .map(|[origin, direction]| ExactRay { origin: (origin + shift) * scale, direction })
             .collect();
         let backend = CpuBackend::new(1).unwrap();
         let expected = with_prepared(&backend, &near, |prepared| prepared.trace(&rays, false).unwrap());
@@ -418,7 +420,8 @@ fn the_hash_and_the_record_know_where_a_scene_lies() {
 }
 
 const FAR_FILE: &str = "v from 500003.1 2 4649780.25 at 500000 0.5 4649776 up 0 1 0 angle 50\nl 500010 20 4649770\n\
-    f 1 .5 .5 1 0 0 0 1\ns 500000 0.5 4649776 1\np 4 499995 -.5 4649771 499995 -.5 4649781 500005 -.5 4649781 500005 -.5 4649771\n";
+    f 1 .5 .5 1 0 0 0 1\ns 500000 0.5 4649776 1\n\
+    p 4 499995 -.5 4649771 499995 -.5 4649781 500005 -.5 4649781 500005 -.5 4649771\n";
 
 /// The same with all of it at the origin.
 fn near_file() -> String {
