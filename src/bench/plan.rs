@@ -5,7 +5,7 @@ use crate::accel::Selection;
 use crate::backend::{Config, DeviceInfo, Pixel, Size};
 use crate::camera::{CameraPath, View};
 use crate::error::{Error, Result};
-use crate::results::record::{PathRecord, PlanRecord, SceneRecord};
+use crate::results::record::{PathRecord, PlacementRecord, PlanRecord, SceneRecord};
 use crate::scene::{self, Scene, catalogue};
 use std::path::PathBuf;
 
@@ -314,6 +314,8 @@ pub fn scene_record(scene: &Scene) -> SceneRecord {
         lights: scene.lights.len() as u64,
         degenerate_triangles: scene.degenerate_triangles as u64,
         mirror_share: f64::from(scene.mirror_share()),
+        placement: (!scene.placement.is_identity())
+            .then(|| PlacementRecord { offset: scene.placement.offset.to_array(), exponent: scene.placement.exponent }),
     }
 }
 

@@ -2,11 +2,12 @@
 
 use super::orbit::{LightOrbit, Orbit};
 use super::path::{CameraPath, Kind, PathLight};
-use super::recorded::Recorded;
+use super::recorded::{Recorded, Recording};
 use super::walk::{Aim, Key, Walk};
 use crate::error::{Error, Result};
 use crate::scene::Pose;
-use glam::Vec3;
+use crate::scene::placement::MAX_COORDINATE;
+use glam::{DVec3, Vec3};
 use serde::Deserialize;
 use std::ops::Range;
 use std::path::Path;
@@ -44,7 +45,7 @@ struct File {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct FileLight {
-    position: Spanned<[f32; 3]>,
+    position: Spanned<[f64; 3]>,
     colour: Option<Spanned<[f32; 3]>>,
     #[serde(default)]
     relative: bool,
@@ -54,8 +55,8 @@ struct FileLight {
 #[serde(deny_unknown_fields)]
 struct FileKey {
     time: Spanned<f32>,
-    position: Spanned<[f32; 3]>,
-    target: Option<Spanned<[f32; 3]>>,
+    position: Spanned<[f64; 3]>,
+    target: Option<Spanned<[f64; 3]>>,
     direction: Option<Spanned<[f32; 3]>>,
     up: Option<Spanned<[f32; 3]>>,
 }
@@ -86,8 +87,17 @@ impl Source<'_> {
 
     fn vector(&self, value: &Spanned<[f32; 3]>, key: &str) -> Result<Vec3> {
         let vector = Vec3::from(*value.get_ref());
-        if vector.is_finite() && vector.abs().max_element() <= MAX_LENGTH {
+        if vector.is_finite() && vector.abs().max_element() <= MAX_COORDINATE as f32 {
             return Ok(vector);
+        }
+        Err(self.fault(value.span(), format!("{key} is not finite or too large"), "give three plain numbers"))
+    }
+
+    /// A point of the scene's file, or of its bounds.
+    fn point(&self, value: &Spanned<[f64; 3]>, key: &str) -> Result<DVec3> {
+        let point = DVec3::from(*value.get_ref());
+        if point.is_finite() && point.abs().max_element() <= MAX_COORDINATE {
+            return Ok(point);
         }
         Err(self.fault(value.span(), format!("{key} is not finite or too large"), "give three plain numbers"))
     }
@@ -120,9 +130,6 @@ impl Source<'_> {
         }
     }
 }
-
-/// Coordinates beyond this have no meaning beside a scene whose diagonal is finite.
-const MAX_LENGTH: f32 = 1e18;
 
 /// Reads a path. `name` is its own, `place` stands in errors.
 pub(super) fn parse(name: &str, place: &str, text: &str) -> Result<CameraPath> {
@@ -186,7 +193,7 @@ pub(super) fn parse(name: &str, place: &str, text: &str) -> Result<CameraPath> {
     };
     let lights = file.lights.iter().map(|light| {
         Ok(PathLight {
-            position: source.vector(&light.position, "position")?,
+            position: source.point(&light.position, "position")?,
             colour: source.colour(&light.colour, "colour")?,
             relative: light.relative,
         })
@@ -241,21 +248,22 @@ fn recorded(source: &Source, file: &File) -> Result<Recorded> {
         return Err(source.fault(file.kind.span(), problem, mend));
     };
     let pose = |row: &Spanned<[f64; 10]>| {
-        let vector = |at: usize| Vec3::from([0, 1, 2].map(|i| row.get_ref()[at + i] as f32));
+        let point = DVec3::from_slice(&row.get_ref()[1..4]);
+        let vector = |at: usize| DVec3::from_slice(&row.get_ref()[at..at + 3]).as_vec3();
         let fault = |problem: &str| source.fault(row.span(), problem, "repair the row");
         // What is a unit vector stays as it is, to the bit
         let unit = |v: Vec3| if v.is_normalized() { v } else { v.normalize_or_zero() };
-        let pose =
-            Pose { time: row.get_ref()[0], position: vector(1), direction: unit(vector(4)), up: unit(vector(7)) };
-        let sound = pose.time.is_finite() && pose.position.is_finite();
-        if !sound || pose.position.abs().max_element() > MAX_LENGTH {
+        let (time, direction, up) = (row.get_ref()[0], unit(vector(4)), unit(vector(7)));
+        let pose = Pose { time, position: point.as_vec3(), direction, up };
+        let sound = pose.time.is_finite() && point.is_finite();
+        if !sound || point.abs().max_element() > MAX_COORDINATE {
             return Err(fault("time or position is not finite or too large"));
         }
         // Zero and what is not finite fail here as well
         if !(pose.direction.cross(pose.up).length() >= 1e-3) {
             return Err(fault("direction or up is zero, or the camera looks along its up vector"));
         }
-        Ok(pose)
+        Ok(Recording::InFile(point, pose))
     };
     Ok(Recorded { poses: rows.iter().map(pose).collect::<Result<_>>()? })
 }
@@ -276,10 +284,10 @@ fn walk(source: &Source, file: &File, up: Vec3) -> Result<Walk> {
             let problem = format!("time = {time} is not greater than the key's before it");
             return Err(source.fault(key.time.span(), problem, "the keys' times must increase"));
         }
-        let position = source.vector(&key.position, "position")?;
+        let position = source.point(&key.position, "position")?;
         let aim = match (&key.target, &key.direction) {
             (Some(target), None) => {
-                let at = source.vector(target, "target")?;
+                let at = source.point(target, "target")?;
                 if at == position {
                     let problem = "the camera stands on its target";
                     return Err(source.fault(target.span(), problem, "move one of them"));
@@ -295,13 +303,16 @@ fn walk(source: &Source, file: &File, up: Vec3) -> Result<Walk> {
         let own_up = key.up.as_ref().map(|up| source.direction(up, "up")).transpose()?;
         // In relative coordinates a target's direction is known only with the scene: views() looks again.
         let along = match aim {
-            Aim::Target(target) if !file.relative.as_ref().is_some_and(|r| *r.get_ref()) => target - position,
+            Aim::Target(target) if !file.relative.as_ref().is_some_and(|r| *r.get_ref()) => {
+                (target - position).normalize_or_zero().as_vec3()
+            }
             Aim::Direction(direction) => direction,
             Aim::Target(_) => Vec3::ZERO,
         };
         let along = along.normalize_or_zero();
         if along != Vec3::ZERO && along.cross(own_up.unwrap_or(up)).length() < 1e-3 {
-            let span = key.direction.as_ref().or(key.target.as_ref()).map_or(spanned.span(), Spanned::span);
+            let spans = [key.direction.as_ref().map(Spanned::span), key.target.as_ref().map(Spanned::span)];
+            let span = spans.into_iter().flatten().next().unwrap_or(spanned.span());
             return Err(source.fault(span, "the camera looks along its up vector", "give this key another `up`"));
         }
         keys.push(Key { time, position, aim, up: own_up });

@@ -9,7 +9,7 @@ mod walk;
 use crate::scene::Light;
 use glam::Vec3;
 pub use path::{CameraPath, descriptions, names};
-pub use recorded::{to_csv, to_toml};
+pub use recorded::{to_csv, to_placed_csv, to_placed_toml, to_toml};
 
 /// A pinhole camera.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,14 +2,14 @@
 
 use super::file;
 use super::orbit::{LightOrbit, Orbit};
-use super::recorded::Recorded;
+use super::recorded::{Recorded, Recording};
 use super::walk::Walk;
 use super::{Camera, View};
 use crate::config::Config;
 use crate::error::{Error, Result};
 use crate::math::Aabb;
-use crate::scene::{Light, Scene, SceneCamera, did_you_mean};
-use glam::Vec3;
+use crate::scene::{Light, Placement, Scene, SceneCamera, did_you_mean};
+use glam::{DVec3, Vec3};
 use std::path::Path;
 
 /// The files that are part of the program, so that it works wherever it stands. Name and text.
@@ -76,15 +76,39 @@ pub(super) enum Kind {
 /// A light of the path's own.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PathLight {
-    pub position: Vec3,
+    /// In the file's coordinates, unless it is relative.
+    pub position: DVec3,
     pub colour: Vec3,
     /// True if the position is in units of the bounds, 0 to 1 per axis.
     pub relative: bool,
 }
 
-/// A point in units of the bounds, 0 to 1 per axis.
-pub(super) fn in_bounds(bounds: Aabb, relative: Vec3) -> Vec3 {
-    bounds.min + bounds.extent() * relative
+/// What a scene makes of a path's points.
+#[derive(Clone, Copy)]
+pub(super) struct Room {
+    /// The box around the scene, in memory.
+    pub bounds: Aabb,
+    placement: Placement,
+}
+
+impl Room {
+    fn of(scene: &Scene) -> Room {
+        Room { bounds: scene.bounds(), placement: scene.placement }
+    }
+
+    /// Where a path's point lies in memory: it is in units of the bounds, 0 to 1 per axis, or in the file's
+    /// coordinates.
+    pub fn place(&self, point: DVec3, relative: bool) -> Vec3 {
+        match relative {
+            true => self.in_bounds(point.as_vec3()),
+            false => self.placement.place(point),
+        }
+    }
+
+    /// A point in units of the bounds.
+    pub fn in_bounds(&self, relative: Vec3) -> Vec3 {
+        self.bounds.min + self.bounds.extent() * relative
+    }
 }
 
 impl CameraPath {
@@ -123,7 +147,7 @@ impl CameraPath {
     /// and the light's turn where there are shadows.
     pub fn for_scene(scene: &Scene, config: Config) -> CameraPath {
         if let Some(camera) = scene.camera.as_ref().filter(|camera| !camera.frames.is_empty()) {
-            return CameraPath::of_file(&scene.name, camera);
+            return CameraPath::of_file(scene, camera);
         }
         let default = if config.shadows() { "light-orbit" } else { "orbit" };
         let own = scene.camera_path.as_deref().and_then(|name| CameraPath::load(name).ok());
@@ -131,11 +155,13 @@ impl CameraPath {
     }
 
     /// The camera that a scene's file brings. A still one is a path of one frame.
-    fn of_file(scene: &str, camera: &SceneCamera) -> CameraPath {
+    fn of_file(scene: &Scene, camera: &SceneCamera) -> CameraPath {
         // Without the options that may stand behind the file's name
-        let name = scene.split(':').next().unwrap_or_default().to_owned();
+        let name = scene.name.split(':').next().unwrap_or_default().to_owned();
         let description = format!("The camera of the scene file {name}");
-        let hash = blake3::hash(super::to_toml(camera, &[], &description).as_bytes()).to_hex().to_string();
+        let text = super::to_placed_toml(&scene.placement, camera, &[], &description);
+        let hash = blake3::hash(text.as_bytes()).to_hex().to_string();
+        let poses = camera.frames.iter().map(|pose| Recording::Placed(*pose)).collect();
         CameraPath {
             place: name.clone(),
             name,
@@ -143,7 +169,7 @@ impl CameraPath {
             frames: camera.frames.len(),
             field_of_view: camera.field_of_view,
             up: Vec3::Y,
-            kind: Kind::Recorded(Recorded { poses: camera.frames.clone() }),
+            kind: Kind::Recorded(Recorded { poses }),
             lights: Vec::new(),
             hash,
         }
@@ -169,7 +195,8 @@ impl CameraPath {
                 format!("take 1 to {} frames{}", self.frames, self.more_frames()),
             ));
         }
-        let bounds = scene.bounds();
+        let room = Room::of(scene);
+        let bounds = room.bounds;
         if bounds.diagonal() <= 0.0 || bounds.is_empty() {
             let problem = format!("scene {} is a single point: no camera can look at it", scene.name);
             return Err(Error::argument(&self.place, problem, "give a scene with an extent"));
@@ -178,23 +205,24 @@ impl CameraPath {
         match &self.kind {
             Kind::Orbit(orbit) => {
                 let fitted = orbit.fit(scene, bounds, self.up, self.field_of_view);
-                (0..wanted).map(|i| self.view(scene, bounds, frame(i), fitted.camera(self.share(frame(i))))).collect()
+                (0..wanted).map(|i| self.view(scene, room, frame(i), fitted.camera(self.share(frame(i))))).collect()
             }
             Kind::LightOrbit(orbit) => {
                 let camera = orbit.camera.fit(scene, bounds, self.up, self.field_of_view).camera(0.0);
+                let camera = Camera { position: scene.placement.snap(camera.position), ..camera };
                 let light = |i| vec![orbit.light(bounds, self.up, self.share(frame(i)))];
                 self.check_camera(frame(0), &camera)?;
                 Ok((0..wanted).map(|i| View { camera, lights: light(i) }).collect())
             }
             Kind::Recorded(recorded) => (0..wanted)
-                .map(|i| self.view(scene, bounds, frame(i), recorded.camera(frame(i), self.field_of_view)))
+                .map(|i| self.view(scene, room, frame(i), recorded.camera(room, frame(i), self.field_of_view)))
                 .collect(),
             Kind::Walk(walk) => (0..wanted)
                 .map(|i| {
                     // The last frame stands at the last key.
                     let share = frame(i) as f32 / (self.frames - 1).max(1) as f32;
-                    let camera = walk.camera(bounds, self.up, self.field_of_view, share);
-                    self.view(scene, bounds, frame(i), camera)
+                    let camera = walk.camera(room, self.up, self.field_of_view, share);
+                    self.view(scene, room, frame(i), camera)
                 })
                 .collect(),
         }
@@ -223,7 +251,7 @@ impl CameraPath {
     pub(super) fn time(&self, i: usize, wanted: usize) -> f64 {
         let frame = self.thinned(i, wanted);
         match &self.kind {
-            Kind::Recorded(recorded) => recorded.poses[frame].time,
+            Kind::Recorded(recorded) => recorded.poses[frame].time(),
             _ => frame as f64,
         }
     }
@@ -233,9 +261,11 @@ impl CameraPath {
         frame as f32 / self.frames as f32
     }
 
-    fn view(&self, scene: &Scene, bounds: Aabb, frame: usize, camera: Camera) -> Result<View> {
+    /// What a frame shows. The camera stands where an exported path would put it.
+    fn view(&self, scene: &Scene, room: Room, frame: usize, camera: Camera) -> Result<View> {
+        let camera = Camera { position: scene.placement.snap(camera.position), ..camera };
         self.check_camera(frame, &camera)?;
-        Ok(View { camera, lights: self.lights_for(scene, bounds, &camera) })
+        Ok(View { camera, lights: self.lights_for(scene, room, &camera) })
     }
 
     /// True if each frame has a light of its own, as a light orbit's have.
@@ -245,24 +275,24 @@ impl CameraPath {
 
     /// The path's own lights that stand still, in this scene.
     pub fn lights(&self, scene: &Scene) -> Vec<Light> {
-        self.lights_in(scene.bounds())
+        self.lights_in(Room::of(scene))
     }
 
-    fn lights_in(&self, bounds: Aabb) -> Vec<Light> {
-        let place = |l: &PathLight| if l.relative { in_bounds(bounds, l.position) } else { l.position };
+    fn lights_in(&self, room: Room) -> Vec<Light> {
+        let place = |l: &PathLight| room.placement.snap(room.place(l.position, l.relative));
         self.lights.iter().map(|l| Light::new(place(l), l.colour)).collect()
     }
 
     /// The path's lights, or the scene's, or the default light: white, half the scene's radius above and a quarter to the
     /// left of the camera, and moving with it, so that what is seen is lit.
-    fn lights_for(&self, scene: &Scene, bounds: Aabb, camera: &Camera) -> Vec<Light> {
+    fn lights_for(&self, scene: &Scene, room: Room, camera: &Camera) -> Vec<Light> {
         if !self.lights.is_empty() {
-            return self.lights_in(bounds);
+            return self.lights_in(room);
         }
         if !scene.lights.is_empty() {
             return scene.lights.clone();
         }
-        let radius = bounds.diagonal() * 0.5;
+        let radius = room.bounds.diagonal() * 0.5;
         let right = camera.direction.cross(camera.up).normalize();
         let up = right.cross(camera.direction);
         vec![Light::new(camera.position + (up * 0.5 - right * 0.25) * radius, Vec3::ONE)]

@@ -1,16 +1,16 @@
 //! A walk: key frames with times, joined by Catmull-Rom splines.
 
 use super::Camera;
-use super::path::in_bounds;
-use crate::math::Aabb;
-use glam::Vec3;
+use super::path::Room;
+use glam::{DVec3, Vec3};
 
 /// A key frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Key {
     /// Any unit; the path's frames are spread evenly from the first key to the last.
     pub time: f32,
-    pub position: Vec3,
+    /// In the file's coordinates, unless the walk is relative; so is a target.
+    pub position: DVec3,
     pub aim: Aim,
     /// Overrides the path's.
     pub up: Option<Vec3>,
@@ -20,7 +20,7 @@ pub(super) struct Key {
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Aim {
     /// At a point.
-    Target(Vec3),
+    Target(DVec3),
     /// Along a vector.
     Direction(Vec3),
 }
@@ -38,18 +38,21 @@ impl Walk {
     ///
     /// If all keys have targets, the target is interpolated (a camera that circles a point keeps looking at it),
     /// otherwise the direction.
-    pub fn camera(&self, bounds: Aabb, up: Vec3, field_of_view: f32, share: f32) -> Camera {
-        let place = |p: Vec3| if self.relative { in_bounds(bounds, p) } else { p };
+    pub fn camera(&self, room: Room, up: Vec3, field_of_view: f32, share: f32) -> Camera {
+        // What is relative is interpolated in units of the bounds
+        let value = |p: DVec3| if self.relative { p.as_vec3() } else { room.place(p, false) };
+        let point = |value: Vec3| if self.relative { room.in_bounds(value) } else { value };
+        let place = |p: DVec3| room.place(p, self.relative);
         let (first, last) = (self.keys[0].time, self.keys[self.keys.len() - 1].time);
         let time = first + (last - first) * share;
 
-        let position = place(self.interpolate(time, |k| k.position));
+        let position = point(self.interpolate(time, |k| value(k.position)));
         let target = |k: &Key| match k.aim {
             Aim::Target(target) => Some(target),
             Aim::Direction(_) => None,
         };
         let direction = if self.keys.iter().all(|k| target(k).is_some()) {
-            place(self.interpolate(time, |k| target(k).unwrap_or_default())) - position
+            point(self.interpolate(time, |k| value(target(k).unwrap_or_default()))) - position
         } else {
             self.interpolate(time, |k| match k.aim {
                 Aim::Target(target) => (place(target) - place(k.position)).normalize_or_zero(),

@@ -18,7 +18,8 @@ pub enum Command {
     /// Write a scene's camera path, frame by frame
     ///
     /// A file that ends in .csv gets a row per frame: frame, time, position, direction, up. Any other becomes a camera
-    /// path file that shows the same views again, to the bit, in every scene. A path whose light moves cannot be written.
+    /// path file that shows the same views again, to the bit. Positions are in the coordinates of the scene's file. A
+    /// path whose light moves cannot be written.
     Export {
         /// Scene file, or built-in scene with parameters
         #[arg(value_name = "FILE|NAME[:KEY=VALUE,..]")]
@@ -64,8 +65,11 @@ pub fn run(command: &Command) -> Result<()> {
             }
             let recorded = path.poses(&scene, *frames)?;
             let text = match out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv")) {
-                true => camera::to_csv(&recorded),
-                false => camera::to_toml(&recorded, &path.lights(&scene), &format!("{} in {}", path.name, scene.name)),
+                true => camera::to_placed_csv(&scene.placement, &recorded),
+                false => {
+                    let description = format!("{} in {}", path.name, scene.name);
+                    camera::to_placed_toml(&scene.placement, &recorded, &path.lights(&scene), &description)
+                }
             };
             files::replace(out, text.as_bytes())?;
             output::print(&format!("{}: {} frames of {}\n", out.display(), recorded.frames.len(), path.name))

@@ -5,6 +5,7 @@ use super::interrupt;
 use super::library::LibraryArguments;
 use super::output;
 use crate::accel::Selection;
+use crate::backend::GivenRay;
 use crate::error::Result;
 use crate::math::MISS;
 use crate::results::{files, rays};
@@ -14,7 +15,8 @@ use std::path::PathBuf;
 /// Trace rays from a CSV file and write their hits
 ///
 /// The file's first line names its columns: origin_x, origin_y, origin_z, direction_x, direction_y, direction_z, in any
-/// order; others are ignored. The result has a line t,triangle for each ray: the distance in units of the direction's
+/// order; others are ignored. Origins are in the coordinates of the scene's file, up to 1e18, and directions have any
+/// length. The result has a line t,triangle for each ray: the distance in units of the direction's
 /// length and the triangle's index in the file, polygons counted as fans; empty and -1 for a miss. With --any-hit it only
 /// says whether something is hit: 0,0 or a miss.
 #[derive(Args, Debug)]
@@ -55,15 +57,17 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     interrupt::at_once()?;
     arguments.device.check()?;
     files::keep(&arguments.out, [arguments.rays.as_path()].into_iter())?;
-    let rays = rays::read(&arguments.rays)?;
+    let exact = rays::read_exact(&arguments.rays)?;
     let (scene, sources) = arguments.library.load_with_sources(&arguments.scene)?;
+    let rays: Vec<_> = exact.iter().map(|ray| ray.place(&scene.placement)).collect();
     files::keep(&arguments.out, sources.paths())?;
     let device = arguments.device.open()?;
     device::announce(&device);
     let built = selection.build(&scene, arguments.device.threads)?;
     let mut prepared = device.backend.prepare(&scene, &built.structure, selection.method())?;
-    let hits = prepared.trace(&rays, arguments.any_hit)?;
-    rays::write(&arguments.out, &hits)?;
+    let given: Vec<GivenRay> = rays.iter().map(|ray| ray.ray).collect();
+    let hits = prepared.trace(&given, arguments.any_hit)?;
+    rays::write(&arguments.out, &rays, &hits)?;
     let found = hits.iter().filter(|hit| hit.triangle != MISS).count();
     output::print(&format!("{}: {found} of {} rays hit\n", arguments.out.display(), hits.len()))
 }

@@ -247,13 +247,15 @@ impl<T: Traverse> Prepared for CpuPrepared<'_, T> {
     }
 
     fn trace(&mut self, rays: &[GivenRay], any_hit: bool) -> Result<Vec<Hit>> {
-        let mut hits = vec![Hit::NONE; rays.len()];
-        self.pool.install(|| {
-            hits.par_chunks_mut(GROUP).zip(rays.par_chunks(GROUP)).for_each(|(hits, rays)| {
-                trace_group(&self.traversal, self.triangles, rays, any_hit, hits);
+        trace_units(rays, 0, |rays| {
+            let mut hits = vec![Hit::NONE; rays.len()];
+            self.pool.install(|| {
+                hits.par_chunks_mut(GROUP).zip(rays.par_chunks(GROUP)).for_each(|(hits, rays)| {
+                    trace_group(&self.traversal, self.triangles, rays, any_hit, hits);
+                });
             });
-        });
-        Ok(hits)
+            Ok(hits)
+        })
     }
 
     fn allocated(&self) -> (u64, u64) {

@@ -213,6 +213,31 @@ impl<'a> GpuPrepared<'a> {
     }
 }
 
+impl GpuPrepared<'_> {
+    /// Traces as many rays as a dispatch takes.
+    fn trace_chunk(&self, compiled: &Compiled, rays: &[GivenRay]) -> Result<Vec<Hit>> {
+        let given: Vec<TraceRay> = rays
+            .iter()
+            .map(|ray| TraceRay { origin: ray.origin, direction: ray.direction, ..TraceRay::zeroed() })
+            .collect();
+        let given = self.backend.storage("the given rays", &given)?;
+        let job = [rays.len() as u32, 0, 0, 0];
+        let job = self.backend.filled("the job", bytemuck::cast_slice(&job), wgpu::BufferUsages::UNIFORM)?;
+        let output = self.poisoned("the hits", (rays.len() * 8) as u64)?;
+        let bindings = self.bind(compiled, job.as_entire_binding(), &[(3, &given), (8, &output)]);
+        let mut encoder = self.backend.device.create_command_encoder(&Default::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&Default::default());
+            pass.set_pipeline(&compiled.pipeline);
+            pass.set_bind_group(0, &bindings, &[]);
+            pass.dispatch_workgroups((rays.len() as u32).div_ceil(self.method.group.size()), 1, 1);
+        }
+        self.backend.queue.submit([encoder.finish()]);
+        let found: Vec<[u32; 2]> = self.read(&output, rays.len())?;
+        Ok(found.iter().map(|&[t, triangle]| Hit { t: f32::from_bits(t), triangle }).collect())
+    }
+}
+
 impl Prepared for GpuPrepared<'_> {
     fn image(&mut self, config: Config, view: &View, size: Size) -> Result<Vec<Pixel>> {
         let compiled = self.backend.compiled(self.kernel_of(Entry::Render { config, counting: false }))?;
@@ -277,25 +302,8 @@ impl Prepared for GpuPrepared<'_> {
         let compiled = self.backend.compiled(self.kernel_of(Entry::Trace { any_hit }))?;
         let mut hits = Vec::with_capacity(rays.len());
         for rays in rays.chunks(TRACE_RAYS) {
-            let given: Vec<TraceRay> = rays
-                .iter()
-                .map(|ray| TraceRay { origin: ray.origin, direction: ray.direction, ..TraceRay::zeroed() })
-                .collect();
-            let given = self.backend.storage("the given rays", &given)?;
-            let job = [rays.len() as u32, 0, 0, 0];
-            let job = self.backend.filled("the job", bytemuck::cast_slice(&job), wgpu::BufferUsages::UNIFORM)?;
-            let output = self.poisoned("the hits", (rays.len() * 8) as u64)?;
-            let bindings = self.bind(&compiled, job.as_entire_binding(), &[(3, &given), (8, &output)]);
-            let mut encoder = self.backend.device.create_command_encoder(&Default::default());
-            {
-                let mut pass = encoder.begin_compute_pass(&Default::default());
-                pass.set_pipeline(&compiled.pipeline);
-                pass.set_bind_group(0, &bindings, &[]);
-                pass.dispatch_workgroups((rays.len() as u32).div_ceil(self.method.group.size()), 1, 1);
-            }
-            self.backend.queue.submit([encoder.finish()]);
-            let found: Vec<[u32; 2]> = self.read(&output, rays.len())?;
-            hits.extend(found.iter().map(|&[t, triangle]| Hit { t: f32::from_bits(t), triangle }));
+            let found = trace_units(rays, hits.len(), |rays| self.trace_chunk(&compiled, rays))?;
+            hits.extend(found);
         }
         debug_assert!(hits.iter().all(|hit| hit.t <= T_MAX));
         Ok(hits)

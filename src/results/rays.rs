@@ -4,18 +4,59 @@ use super::files;
 use crate::backend::GivenRay;
 use crate::error::{Error, Result};
 use crate::math::{Hit, MISS};
-use glam::Vec3;
+use crate::scene::Placement;
+use crate::scene::placement::{MAX_COORDINATE, exponent_of, power_of_two};
+use glam::DVec3;
 use std::path::Path;
 
 /// The columns that a file of rays must have, in any order; others are ignored.
 pub const COLUMNS: [&str; 6] = ["origin_x", "origin_y", "origin_z", "direction_x", "direction_y", "direction_z"];
+
+/// A ray as it stands in a file, in the coordinates of the scene's file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExactRay {
+    /// Start, up to 1e18.
+    pub origin: DVec3,
+    /// Direction, any length but zero.
+    pub direction: DVec3,
+}
+
+impl ExactRay {
+    /// The ray in memory.
+    pub fn place(&self, placement: &Placement) -> PlacedRay {
+        let scaled = -exponent_of(self.direction.abs().max_element());
+        // In two steps: a direction may be shorter than the inverse of any double
+        let factors = [scaled / 2, scaled - scaled / 2].map(power_of_two);
+        let direction = (self.direction * factors[0] * factors[1]).as_vec3();
+        let ray = GivenRay { origin: placement.place(self.origin), direction };
+        PlacedRay { ray, exponent: scaled - placement.exponent }
+    }
+}
+
+/// A ray as a scene in memory sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlacedRay {
+    /// With a direction of a length near 1.
+    pub ray: GivenRay,
+    /// A distance along `ray` times two to the power of this is one along the ray of the file.
+    pub exponent: i32,
+}
+
+/// Reads rays and rounds them to single precision, for scenes that lie in memory as in their files.
+///
+/// # Errors
+/// Those of [`read_exact`].
+pub fn read(path: &Path) -> Result<Vec<GivenRay>> {
+    let given = |ray: ExactRay| GivenRay { origin: ray.origin.as_vec3(), direction: ray.direction.as_vec3() };
+    Ok(read_exact(path)?.into_iter().map(given).collect())
+}
 
 /// Reads rays.
 ///
 /// # Errors
 /// [`Error::Input`] with file and line for a missing column, a missing or unusable number, or a direction without
 /// length.
-pub fn read(path: &Path) -> Result<Vec<GivenRay>> {
+pub fn read_exact(path: &Path) -> Result<Vec<ExactRay>> {
     let mut reader = csv::ReaderBuilder::new()
         .flexible(true)
         .trim(csv::Trim::All)
@@ -35,21 +76,26 @@ pub fn read(path: &Path) -> Result<Vec<GivenRay>> {
     let mut record = csv::StringRecord::new();
     while reader.read_record(&mut record).map_err(|e| csv_error(path, &e))? {
         let line = record.position().map(|p| p.line() as usize);
-        let mut values = [0.0f32; 6];
-        for ((value, &place), name) in values.iter_mut().zip(&places).zip(COLUMNS) {
-            let text = record.get(place).unwrap_or("");
-            let parsed: Option<f32> = text.parse().ok().filter(|v: &f32| v.is_finite());
-            *value = parsed.ok_or_else(|| {
-                let problem = format!("{name} is {text:?}, not a finite number");
-                Error::file(path, line, problem, "mend or delete the line")
-            })?;
+        let mut values = [0.0f64; 6];
+        for (i, (value, &place)) in values.iter_mut().zip(&places).enumerate() {
+            let (text, name) = (record.get(place).unwrap_or(""), COLUMNS[i]);
+            // Three origins, three directions
+            let (most, kind) = if i < 3 { (MAX_COORDINATE, "1e18") } else { (f64::from(f32::MAX), "single precision") };
+            let fault = |what: String| {
+                Error::file(path, line, format!("{name} is {text:?}, {what}"), "mend or delete the line")
+            };
+            let parsed: Option<f64> = text.parse().ok().filter(|v: &f64| v.is_finite());
+            *value = parsed.ok_or_else(|| fault("not a finite number".into()))?;
+            if value.abs() > most {
+                return Err(fault(format!("beyond {kind}")));
+            }
         }
         let [ox, oy, oz, dx, dy, dz] = values;
-        let ray = GivenRay { origin: Vec3::new(ox, oy, oz), direction: Vec3::new(dx, dy, dz) };
-        if ray.direction == Vec3::ZERO {
+        let [origin, direction] = [DVec3::new(ox, oy, oz), DVec3::new(dx, dy, dz)];
+        if direction == DVec3::ZERO {
             return Err(Error::file(path, line, "the direction has no length", "mend or delete the line"));
         }
-        rays.push(ray);
+        rays.push(ExactRay { origin, direction });
     }
     if rays.is_empty() {
         return Err(Error::file(path, None, "no rays", "give at least one line below the header"));
@@ -57,25 +103,39 @@ pub fn read(path: &Path) -> Result<Vec<GivenRay>> {
     Ok(rays)
 }
 
-/// Writes `t,triangle` per ray; `t` is empty and the triangle -1 for a miss.
+/// Writes `t,triangle` per placed ray; `t` is empty and the triangle -1 for a miss.
 ///
 /// # Errors
 /// [`Error::Output`].
-pub fn write(path: &Path, hits: &[Hit]) -> Result<()> {
-    files::replace(path, to_csv(hits).as_bytes())
+pub fn write(path: &Path, rays: &[PlacedRay], hits: &[Hit]) -> Result<()> {
+    let exponents = rays.iter().map(|ray| ray.exponent);
+    files::replace(path, csv(hits.iter().zip(exponents)).as_bytes())
 }
 
 /// The content of a file of hits. Distances are the shortest decimals that read back as the same `f32`.
 pub fn to_csv(hits: &[Hit]) -> String {
+    csv(hits.iter().map(|hit| (hit, 0)))
+}
+
+/// Hits, each with the exponent of the power of two that its distance is to be taken times.
+fn csv<'a>(hits: impl Iterator<Item = (&'a Hit, i32)>) -> String {
     let mut text = String::from("t,triangle\n");
-    for hit in hits {
+    for (hit, exponent) in hits {
         if hit.triangle == MISS {
             text.push_str(",-1\n");
         } else {
-            text.push_str(&format!("{},{}\n", hit.t, hit.triangle));
+            text.push_str(&format!("{},{}\n", distance(hit.t, exponent), hit.triangle));
         }
     }
     text
+}
+
+/// A distance times a power of two, as a float if it is one, otherwise as a double.
+fn distance(t: f32, exponent: i32) -> String {
+    let [half, rest] = [exponent / 2, exponent - exponent / 2].map(power_of_two);
+    let exact = f64::from(t) * half * rest;
+    let single = exact as f32;
+    if f64::from(single) == exact { single.to_string() } else { format!("{exact:e}") }
 }
 
 /// A reader's error in our words.

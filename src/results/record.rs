@@ -144,6 +144,18 @@ pub struct SceneRecord {
     pub degenerate_triangles: u64,
     /// Share of the surface that mirrors, 0 to 1.
     pub mirror_share: f64,
+    /// Where it lies in memory; absent where that is as in its file, as in all records from before there was a choice.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub placement: Option<PlacementRecord>,
+}
+
+/// What leads from a scene's file to memory: `(file - offset) * 2^exponent`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PlacementRecord {
+    /// The point of the file that is the origin.
+    pub offset: [f64; 3],
+    /// The power of two that lengths are scaled by.
+    pub exponent: i32,
 }
 
 /// A structure that was built.

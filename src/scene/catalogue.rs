@@ -1,7 +1,7 @@
 //! The catalogue: real scenes by name (`scenes/catalog.toml`, part of the program). Their files are not part of it; they
 //! are looked for in a folder that the caller names.
 
-use super::{Light, did_you_mean, procedural};
+use super::{Light, Placement, did_you_mean, procedural};
 use crate::error::{Error, Result};
 use glam::Vec3;
 use serde::Deserialize;
@@ -199,8 +199,9 @@ impl Entry {
         }
     }
 
-    /// The lights that the catalogue gives to a file without any.
-    pub fn lights(&self) -> Vec<Light> {
-        self.light.iter().map(|light| Light::new(Vec3::from(light.position), Vec3::from(light.colour))).collect()
+    /// The lights that the catalogue gives to a file without any, for a scene that is placed so.
+    pub fn lights(&self, placement: &Placement) -> Vec<Light> {
+        let place = |position: [f32; 3]| placement.place(Vec3::from(position).as_dvec3());
+        self.light.iter().map(|light| Light::new(place(light.position), Vec3::from(light.colour))).collect()
     }
 }

@@ -1,8 +1,13 @@
 //! Loading by name: files by their extension, folders and lists of files as one scene, built-in scenes, the catalogue.
 
 use super::extent::Extent;
-use super::{FORMATS, Material, Options, Reader, Scene, Triangle, catalogue, did_you_mean, procedural, sources};
+use super::options::settings as split;
+use super::{
+    FORMATS, Material, Options, Origin, Reader, Scene, Triangle, catalogue, did_you_mean, placement, procedural,
+    sources,
+};
 use crate::error::{Error, Result};
+use glam::DVec3;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
@@ -45,7 +50,7 @@ pub fn load_in(what: &str, folder: Option<&Path>) -> Result<Scene> {
     let mut scene = procedural::build(what)?;
     let extent = Extent::of(&scene);
     scene.complete(extent).map_err(|(problem, mend)| Error::argument(what, problem, mend))?;
-    scene.count_degenerate();
+    scene.survey();
     Ok(scene)
 }
 
@@ -86,7 +91,7 @@ fn load_entry(what: &str, entry: &catalogue::Entry, settings: &str, folder: Opti
         scene.warnings.push(format!("not the catalogue's file: the SHA-256 of {} is {found}", path.display()));
     }
     if scene.lights.is_empty() {
-        scene.lights = entry.lights();
+        scene.lights = entry.lights(&scene.placement);
     }
     scene.camera_path = scene.camera_path.or_else(|| entry.camera_path.clone());
     let found = scene.triangles.len();
@@ -111,10 +116,21 @@ fn finish(mut scene: Scene, place: &str, options: &Options) -> Result<Scene> {
         (None, _) => {}
     }
     let extent = Extent::of(&scene);
-    scene.complete(extent).map_err(|(problem, mend)| Error::file(path, None, problem, mend))?;
-    scene.count_degenerate();
+    let fault = |(problem, mend): (String, _)| Error::file(path, None, problem, mend);
+    scene.complete(extent).map_err(fault)?;
+    let (bounds, normal) = scene.survey();
+    scene.size_fault(bounds).map_or(Ok(()), |found| Err(fault(found)))?;
+    scene.normalise(bounds, normal);
+    // What is scaled may have left the range of floats
+    if let Some(i) = scene.lights.iter().position(|light| !light.position.is_finite()) {
+        return Err(fault((format!("light {i} is too far away from a scene so small"), "bring it nearer")));
+    }
     Ok(scene)
 }
+
+/// Most readings of a scene: a second one where it is far from the origin, further ones where its extent was lost in
+/// the rounding of the first.
+const READINGS: usize = 5;
 
 /// Reads one file, a folder, or files joined by `+`, and names the scene after them (without options).
 fn read(what: &str, name: &str, settings: &str, options: &Options) -> Result<Scene> {
@@ -125,7 +141,18 @@ fn read(what: &str, name: &str, settings: &str, options: &Options) -> Result<Sce
     if folder {
         sources::folder(whole, &files);
     }
-    let scenes = if folder { read_folder(&files, options)? } else { read_list(files, options)? };
+    let mut options = options.clone();
+    let mut readings = 1;
+    let (scenes, moved) = loop {
+        let scenes = if folder { read_folder(&files, &options)? } else { read_list(&files, &options)? };
+        // A cache alone has its place already, also where that is far away
+        let fixed = options.origin != Origin::Auto || files.len() == 1 && is_cache(&files[0]);
+        let parts = scenes.iter().map(|(_, scene)| scene);
+        match if fixed { None } else { placement::better_offset(parts) } {
+            Some(offset) if readings < READINGS => (options.offset, readings) = (Some(offset), readings + 1),
+            _ => break (scenes, !fixed && readings > 1),
+        }
+    };
     let names: Vec<String> = scenes.iter().map(|(file, scene)| own_name(file, scene)).collect();
     let taken: Vec<&str> = scenes.iter().filter_map(|(file, _)| file.file_name()?.to_str()).collect();
     let taken = (folder && 1 < taken.len()).then(|| format!("made of {}", taken.join(", ")));
@@ -136,8 +163,28 @@ fn read(what: &str, name: &str, settings: &str, options: &Options) -> Result<Sce
     };
     scenes.for_each(|other| append(&mut scene, other));
     scene.name = if folder { folder_name(whole) } else { names.join("+") };
+    scene.warnings.extend(placement_warning(&scene, &options, moved));
     scene.warnings.extend(taken);
     Ok(scene)
+}
+
+/// What the user should know of where the scene was put.
+fn placement_warning(scene: &Scene, options: &Options, moved: bool) -> Option<String> {
+    let offset = scene.placement.offset;
+    if moved && offset != DVec3::ZERO {
+        let point = offset.to_array().map(placement::number).join(",");
+        return Some(format!(
+            "coordinates of more than {} times the extent: {point} is the origin while the scene is in memory \
+            (origin=keep leaves it)",
+            placement::FAR
+        ));
+    }
+    if !matches!(options.origin, Origin::At(_)) {
+        return None;
+    }
+    let distance = placement::distance(placement::used_bounds(scene));
+    (distance > placement::FAR)
+        .then(|| format!("the origin that was given is {distance:.0} times the extent away: choose one in the scene"))
 }
 
 /// Refuses options that none of the files' formats heeds.
@@ -148,7 +195,7 @@ fn check_settings(what: &str, settings: &str, files: &[PathBuf]) -> Result<()> {
     heeded.extend(formats.iter().flat_map(|(_, _, heeded)| heeded.iter()));
     heeded.dedup();
     let key = |setting: &str| setting.split('=').next().unwrap_or(setting).to_owned();
-    match settings.split(',').filter(|s| !s.is_empty()).map(key).find(|key| !heeded.contains(&key.as_str())) {
+    match split(settings).iter().map(|s| key(s)).find(|key| !heeded.contains(&key.as_str())) {
         None => Ok(()),
         Some(key) => {
             let cache =
@@ -159,9 +206,9 @@ fn check_settings(what: &str, settings: &str, files: &[PathBuf]) -> Result<()> {
     }
 }
 
-fn read_list(files: Vec<PathBuf>, options: &Options) -> Result<Vec<(PathBuf, Scene)>> {
-    let scene = |file: PathBuf| read_one(&file, options).map(|scene| (file, scene));
-    files.into_iter().map(scene).collect()
+fn read_list(files: &[PathBuf], options: &Options) -> Result<Vec<(PathBuf, Scene)>> {
+    let scene = |file: &PathBuf| read_one(file, options).map(|scene| (file.clone(), scene));
+    files.iter().map(scene).collect()
 }
 
 /// Reads all files of a folder but those that another of them includes: these are in the scene already, where and as often
@@ -246,7 +293,7 @@ fn reader_of(path: &Path) -> Option<Reader> {
     format_of(path).map(|(_, reader, _)| *reader)
 }
 
-/// Puts a scene behind another; the first camera and background stay.
+/// Puts a scene behind another with the same placement; the first camera and background stay.
 fn append(scene: &mut Scene, mut other: Scene) {
     for part in [&mut *scene, &mut other] {
         // A part without materials gets the neutral one, as it would alone.

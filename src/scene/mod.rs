@@ -16,6 +16,7 @@ pub mod mgf;
 pub mod normals;
 pub mod obj;
 mod options;
+pub mod placement;
 pub mod ply;
 pub mod polygon;
 pub mod procedural;
@@ -27,10 +28,12 @@ use crate::error::{Error, Result};
 use crate::math::{Aabb, Vertex};
 use bytemuck::{Pod, Zeroable};
 use extent::Extent;
-use glam::{Vec3, Vec3A};
+use glam::{DVec3, Vec3, Vec3A};
 pub use load::{at_time, has_no_time, load, load_in};
-pub use options::{MAX_SEGMENTS, Options, Up};
+pub use options::{MAX_SEGMENTS, Options, Origin, Up};
+pub use placement::Placement;
 pub use procedural::{Parameter, SceneInfo, list};
+use rayon::prelude::*;
 use std::path::Path;
 pub(crate) use suggest::did_you_mean;
 
@@ -38,25 +41,26 @@ pub(crate) use suggest::did_you_mean;
 /// bits everywhere.
 pub const MAX_ELEMENTS: usize = 1 << 27;
 
-/// A reader: the scene in a file. It need not set `name`, nor `materials` if the format has none, nor count degenerate
-/// triangles; [`load`] does.
+/// A reader: the scene in a file. From every position it subtracts [`Options::offset`] in double precision before it
+/// rounds, and says so in `placement`. It need not set `name`, nor `materials` if the format has none, nor count
+/// degenerate triangles; [`load`] does.
 pub type Reader = fn(&Path, &Options) -> Result<Scene>;
 
 /// What BART's files heed.
-const AFF: &[&str] = &["time", "segments", "cones", "camera", "outside"];
+const AFF: &[&str] = &["time", "segments", "cones", "camera", "outside", "origin"];
 
 /// Readers by file extension (lower case), and which options they heed beside those that every file takes
 /// ([`Options::COMMON`]).
 pub const FORMATS: &[(&str, Reader, &[&str])] = &[
-    ("ply", |path, _| ply::read(path), &[]),
+    ("ply", ply::read, &["origin"]),
     ("aff", aff::read, AFF),
     ("nff", aff::read, AFF),
-    ("mgf", mgf::read, &["segments", "outside"]),
-    ("iv", inventor::read, &["segments", "outside"]),
-    ("wrl", inventor::read, &["segments", "outside"]),
-    ("obj", obj::read, &["lamp", "outside"]),
-    ("gltf", gltf::read, &["camera", "outside"]),
-    ("glb", gltf::read, &["camera", "outside"]),
+    ("mgf", mgf::read, &["segments", "outside", "origin"]),
+    ("iv", inventor::read, &["segments", "outside", "origin"]),
+    ("wrl", inventor::read, &["segments", "outside", "origin"]),
+    ("obj", obj::read, &["lamp", "outside", "origin"]),
+    ("gltf", gltf::read, &["camera", "outside", "origin"]),
+    ("glb", gltf::read, &["camera", "outside", "origin"]),
     // The cache of any of them
     (cache::EXTENSION, cache::read, &[]),
 ];
@@ -149,8 +153,8 @@ pub struct Pose {
     pub up: Vec3,
 }
 
-/// A scene as loaded. Invariants, kept by every reader (see [`Scene::check`]): at least one triangle, all indices in
-/// range, all positions and normals finite, at least one material.
+/// A scene as loaded, in the coordinates of memory. Invariants, kept by every reader (see [`Scene::check`]): at least
+/// one triangle, all indices in range, all positions and normals finite, at least one material.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     /// Short name: the file's stem or the procedural scene's name and parameters. Stands in every record.
@@ -173,6 +177,9 @@ pub struct Scene {
     pub degenerate_triangles: usize,
     /// What the reader wants the user to know, one line each.
     pub warnings: Vec<String>,
+    /// Where all of this lies in the file: positions here are single precision near the origin, and users see the
+    /// file's.
+    pub placement: Placement,
 }
 
 impl Scene {
@@ -253,7 +260,8 @@ impl Scene {
     }
 
     /// BLAKE3 of all that decides what is traced and shaded, hexadecimal: vertices, triangles, materials, lights and
-    /// background, each with its number. Equal on all machines with the same byte order.
+    /// background, each with its number, and the placement where there is one. Equal on all machines with the same
+    /// byte order.
     pub fn content_hash(&self) -> String {
         let background = [self.background];
         let parts: [&[u8]; 5] = [
@@ -267,6 +275,12 @@ impl Scene {
         for part in parts {
             hasher.update(&(part.len() as u64).to_le_bytes());
             hasher.update(part);
+        }
+        // Cameras and rays are given in the file's coordinates: the same scene elsewhere is another one.
+        if !self.placement.is_identity() {
+            let Placement { offset, exponent } = self.placement;
+            offset.to_array().iter().for_each(|x| _ = hasher.update(&x.to_le_bytes()));
+            hasher.update(&exponent.to_le_bytes());
         }
         hasher.finalize().to_hex().to_string()
     }
@@ -291,6 +305,10 @@ impl Scene {
             return;
         }
         let turn = |v: Vec3| if up == Up::Z { Vec3::new(v.x, v.z, -v.y) } else { v };
+        let offset = self.placement.offset;
+        let turned = if up == Up::Z { DVec3::new(offset.x, offset.z, -offset.y) } else { offset };
+        // Adding zero makes -0 and 0 the same placement
+        self.placement.offset = turned * f64::from(scale) + DVec3::ZERO;
         for vertex in &mut self.vertices {
             vertex.position = turn(vertex.position) * scale;
             vertex.normal = turn(vertex.normal);
@@ -314,11 +332,23 @@ impl Scene {
         self.first_fault(extent).map_or(Ok(()), Err)
     }
 
-    /// Counts the triangles without area of a scene that has been checked.
-    fn count_degenerate(&mut self) {
+    /// Counts the triangles without area of a scene that has been checked, and finds the box around all of them and
+    /// the largest coordinate of all products of two edges of a triangle.
+    fn survey(&mut self) -> (Aabb, f64) {
         let vertices = &self.vertices;
-        let degenerate = |t: &&Triangle| normals::is_degenerate(t.vertices.map(|v| vertices[v as usize].position));
-        self.degenerate_triangles = self.triangles.iter().filter(degenerate).count();
+        type Found = (usize, Aabb, f64);
+        let nothing: Found = (0, Aabb::EMPTY, 0.0);
+        let add = |(degenerate, bounds, largest): Found, triangle: &Triangle| {
+            let corners = triangle.vertices.map(|v| vertices[v as usize].position);
+            let normal = normals::product(corners);
+            let bounds = corners.iter().fold(bounds, |b, &p| Aabb { min: b.min.min(p), max: b.max.max(p) });
+            (degenerate + usize::from(normal == DVec3::ZERO), bounds, largest.max(normal.abs().max_element()))
+        };
+        let both = |a: Found, b: Found| (a.0 + b.0, a.1.union(b.1), a.2.max(b.2));
+        let chunks = self.triangles.par_chunks(1 << 14).map(|chunk| chunk.iter().fold(nothing, add));
+        let (degenerate, bounds, normal) = chunks.reduce(|| nothing, both);
+        self.degenerate_triangles = degenerate;
+        (bounds, normal)
     }
 }
 

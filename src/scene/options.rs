@@ -2,6 +2,7 @@
 
 use super::did_you_mean;
 use crate::error::{Error, Result};
+use glam::DVec3;
 
 /// How a file is to be read. A reader heeds what means something in its format; [`super::load`] applies the rest.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,6 +24,11 @@ pub struct Options {
     pub camera: Option<String>,
     /// Field of view in degrees for the file's camera, instead of the file's own.
     pub fov: Option<f32>,
+    /// Where the origin is put while the scene is in memory.
+    pub origin: Origin,
+    /// What readers subtract from every position, in the file's coordinates; `None`: nothing, and a cache stays where
+    /// it is. [`super::load`] sets it by `origin`.
+    pub offset: Option<DVec3>,
     /// OBJ: the material that shines although the file does not say so (exporters lose it); its faces become lights.
     pub lamp: Option<String>,
 }
@@ -37,6 +43,67 @@ pub enum Up {
     Z,
 }
 
+/// Where the origin is put while a scene is in memory, see [`super::Placement`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Origin {
+    /// Into the scene, if its coordinates are larger than [`super::placement::FAR`] diagonals; otherwise where the
+    /// file has it.
+    #[default]
+    Auto,
+    /// Where the file has it, however far that is.
+    Keep,
+    /// At a point of the file, before `up` and `scale`.
+    At(DVec3),
+}
+
+impl Origin {
+    /// Reads `auto`, `keep` or `x,y,z`.
+    fn parse(value: &str) -> Option<Origin> {
+        match value {
+            "auto" => Some(Origin::Auto),
+            "keep" => Some(Origin::Keep),
+            _ => {
+                let numbers: Vec<f64> = value.split(',').map(|x| x.trim().parse().ok()).collect::<Option<_>>()?;
+                let sound = |x: &f64| x.abs() <= super::placement::MAX_COORDINATE;
+                // Adding zero makes -0 and 0 the same origin
+                let point = |&[x, y, z]: &[f64; 3]| Origin::At(DVec3::new(x, y, z) + DVec3::ZERO);
+                numbers.iter().all(sound).then(|| numbers.as_slice().try_into().ok().map(point))?
+            }
+        }
+    }
+
+    /// What readers are to subtract, as far as it is known before anything has been read.
+    fn offset(self) -> Option<DVec3> {
+        match self {
+            Origin::Auto => None,
+            Origin::Keep => Some(DVec3::ZERO),
+            Origin::At(point) => Some(point),
+        }
+    }
+}
+
+impl std::fmt::Display for Origin {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            Origin::Auto => f.write_str("auto"),
+            Origin::Keep => f.write_str("keep"),
+            Origin::At(p) => write!(f, "{},{},{}", p.x, p.y, p.z),
+        }
+    }
+}
+
+/// The settings in `key=value,...`. A piece without a key belongs to the one before it if that is a point.
+pub(super) fn settings(text: &str) -> Vec<String> {
+    let mut settings: Vec<String> = Vec::new();
+    for piece in text.split(',').filter(|piece| !piece.is_empty()) {
+        match settings.last_mut() {
+            Some(last) if !piece.contains('=') && last.starts_with("origin=") => *last += &format!(",{piece}"),
+            _ => settings.push(piece.to_owned()),
+        }
+    }
+    settings
+}
+
 impl Default for Options {
     fn default() -> Options {
         Options {
@@ -48,6 +115,8 @@ impl Default for Options {
             scale: 1.0,
             camera: None,
             fov: None,
+            origin: Origin::Auto,
+            offset: None,
             lamp: None,
         }
     }
@@ -58,7 +127,8 @@ pub const MAX_SEGMENTS: u32 = 1024;
 
 impl Options {
     /// The names of all options.
-    pub const KEYS: [&str; 9] = ["time", "segments", "cones", "outside", "up", "scale", "camera", "fov", "lamp"];
+    pub const KEYS: [&str; 10] =
+        ["time", "segments", "cones", "outside", "up", "scale", "origin", "camera", "fov", "lamp"];
 
     /// Those that every file takes; a file's format may heed more ([`super::FORMATS`]).
     pub const COMMON: [&str; 3] = ["up", "scale", "fov"];
@@ -69,8 +139,8 @@ impl Options {
     /// [`Error::Input`] for the first unknown key or bad value.
     pub fn parse(what: &str, settings: &str) -> Result<Options> {
         let mut options = Options::default();
-        for setting in settings.split(',').filter(|s| !s.is_empty()) {
-            let (key, value) = setting.split_once('=').unwrap_or((setting, ""));
+        for setting in self::settings(settings) {
+            let (key, value) = setting.split_once('=').unwrap_or((&setting, ""));
             let wrong = |mend: &str| Error::argument(what, format!("{key}: `{value}` does not do"), mend);
             match key {
                 "time" => match value.parse() {
@@ -96,7 +166,11 @@ impl Options {
                 },
                 "scale" => match value.parse() {
                     Ok(scale) if (1e-20..=1e20).contains(&scale) => options.scale = scale,
-                    _ => return Err(wrong("give a positive number")),
+                    _ => return Err(wrong("give a positive number, 1e-20 to 1e20")),
+                },
+                "origin" => match Origin::parse(value) {
+                    Some(origin) => (options.origin, options.offset) = (origin, origin.offset()),
+                    None => return Err(wrong("give keep, auto, or a point of the file as x,y,z, up to 1e18")),
                 },
                 "fov" => match value.parse() {
                     Ok(fov) if (0.1..=179.0).contains(&fov) => options.fov = Some(fov),
@@ -131,6 +205,7 @@ impl Options {
         let up = if self.up == Up::Z { "z" } else { "y" };
         text("up", (self.up != base.up).then(|| up.to_owned()));
         text("scale", (self.scale != base.scale).then(|| self.scale.to_string()));
+        text("origin", (self.origin != base.origin).then(|| self.origin.to_string()));
         text("camera", self.camera.clone().filter(|_| self.camera != base.camera));
         text("fov", self.fov.filter(|_| self.fov != base.fov).map(|fov| fov.to_string()));
         text("lamp", self.lamp.clone().filter(|_| self.lamp != base.lamp));

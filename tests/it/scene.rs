@@ -17,6 +17,7 @@ mod memory;
 mod mgf;
 mod mutation;
 mod obj;
+mod placement;
 mod ply;
 
 use rtbench::scene::{self, Scene};

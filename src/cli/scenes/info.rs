@@ -7,7 +7,7 @@ use crate::backend::Config;
 use crate::camera::CameraPath;
 use crate::error::Result;
 use crate::scene::catalogue::{self, Class};
-use crate::scene::{Scene, load_in};
+use crate::scene::{Scene, load_in, placement};
 
 /// Loads a scene and prints what it is like.
 pub fn run(what: &str, library: &LibraryArguments) -> Result<()> {
@@ -27,9 +27,17 @@ pub fn run(what: &str, library: &LibraryArguments) -> Result<()> {
     line("mirroring surface", format!("{:.1} %", 100.0 * scene.mirror_share()));
     line("lights", lights(&scene, entry));
     let bounds = scene.bounds();
-    line("smallest corner", bounds.min.to_string());
-    line("largest corner", bounds.max.to_string());
-    line("extent", format!("{}, diagonal {}", bounds.extent(), bounds.diagonal()));
+    let placement = scene.placement;
+    line("smallest corner", placement.point(bounds.min));
+    line("largest corner", placement.point(bounds.max));
+    let length = |placed: f32| placement::number(placement.exact(placed));
+    let [x, y, z] = bounds.extent().to_array().map(length);
+    line("extent", format!("[{x}, {y}, {z}], diagonal {}", length(bounds.diagonal())));
+    if !placement.is_identity() {
+        let [x, y, z] = placement.offset.to_array().map(placement::number);
+        let scale = if placement.exponent == 0 { String::new() } else { format!(", 2^{} times", placement.exponent) };
+        line("in memory", format!("[{x}, {y}, {z}] is the origin{scale}"));
+    }
     line("camera of the file", camera(&scene));
     for config in Config::ALL {
         line(&format!("camera path for {config:?}"), CameraPath::for_scene(&scene, config).name);
@@ -80,7 +88,7 @@ fn camera(scene: &Scene) -> String {
         None => "none".to_owned(),
         Some(camera) => match camera.frames.as_slice() {
             [] => "none".to_owned(),
-            [pose] => format!("at {}, {} degrees", pose.position, camera.field_of_view),
+            [pose] => format!("at {}, {} degrees", scene.placement.point(pose.position), camera.field_of_view),
             frames => format!("{} frames, {} degrees", frames.len(), camera.field_of_view),
         },
     }

@@ -86,12 +86,13 @@ impl Animation {
 }
 
 /// The scene's camera: a pose per frame if it is animated, one if it stands still. `None` if there is no viewpoint, or
-/// it looks nowhere.
+/// it looks nowhere. `offset` is the point of the file that is the origin in memory.
 pub fn camera(
     view: Option<&Viewpoint>,
     keys: Option<&Keyframes>,
     animation: Option<&Animation>,
     time: f64,
+    offset: DVec3,
 ) -> Option<SceneCamera> {
     let field_of_view = view.copied().unwrap_or_default().angle as f32;
     let Some(keys) = keys else {
@@ -100,12 +101,12 @@ pub fn camera(
         if direction == DVec3::ZERO {
             return None;
         }
-        let pose = pose(time, view.from, direction, view.up);
+        let pose = pose(time, view.from - offset, direction, view.up);
         return Some(SceneCamera { field_of_view, frames: vec![pose] });
     };
     let frame = |time: f64| {
         let turn = keys.rotation(time);
-        pose(time, keys.transform(time).translation, turn * DVec3::NEG_Z, turn * DVec3::Y)
+        pose(time, keys.transform(time).translation - offset, turn * DVec3::NEG_Z, turn * DVec3::Y)
     };
     let frames = animation.map_or_else(|| vec![frame(time)], |animation| animation.times().map(frame).collect());
     Some(SceneCamera { field_of_view, frames })

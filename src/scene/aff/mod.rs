@@ -82,7 +82,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
         detail: 0,
         time: 0.0,
         hidden: 0,
-        mesh: MeshBuilder::default(),
+        mesh: MeshBuilder::new(options.offset),
     };
     reader.file(path, &bytes)?;
     let first_key = || reader.keys.values().filter_map(Keyframes::first_time).min_by(f64::total_cmp);
@@ -103,7 +103,8 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
             Error::file(path, None, format!("there are no keyframes `{name}`"), mend)
         })?),
     };
-    let camera = camera::camera(reader.view.as_ref(), keys, reader.animation.as_ref(), time.unwrap_or(0.0));
+    let (time, offset) = (time.unwrap_or(0.0), reader.mesh.offset());
+    let camera = camera::camera(reader.view.as_ref(), keys, reader.animation.as_ref(), time, offset);
     Ok(Scene { background: reader.background, camera, ..reader.mesh.finish() })
 }
 

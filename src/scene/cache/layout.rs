@@ -6,7 +6,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 /// Version of the layout.
-pub const FORMAT: u32 = 4;
+pub const FORMAT: u32 = 5;
 
 /// What a cache begins with.
 pub const MAGIC: [u8; 8] = *b"RTBSCENE";
@@ -41,7 +41,9 @@ pub struct Header {
     pub poses: u64,
     pub text: u64,
     pub background: [f32; 3],
-    pub pad: u32,
+    /// The scene's placement.
+    pub exponent: i32,
+    pub offset: [f64; 3],
     /// Triangles without area.
     pub degenerate: u64,
 }

@@ -19,11 +19,11 @@ mod stale;
 
 use super::extent::Extent;
 use super::sources::{self, Kind, Source};
-use super::{Light, Material, Options, Pose, Scene, SceneCamera, Triangle, load_in};
+use super::{Light, Material, Options, Placement, Pose, Scene, SceneCamera, Triangle, load_in};
 use crate::error::{Error, Result};
 use crate::math::Vertex;
 use bytemuck::Zeroable;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 pub use layout::FORMAT;
 use layout::{Header, MAGIC, RawPose, pose, raw_pose, readers};
 use parts::{Checksum, Parts};
@@ -92,7 +92,8 @@ pub fn write(scene: &Scene, sources: &Sources, path: &Path) -> Result<()> {
         poses: poses.len() as u64,
         text: text.len() as u64,
         background: scene.background.to_array(),
-        pad: 0,
+        exponent: scene.placement.exponent,
+        offset: scene.placement.offset.to_array(),
         degenerate: scene.degenerate_triangles as u64,
     };
     let parts: [&[u8]; 6] = [
@@ -132,10 +133,12 @@ pub fn write(scene: &Scene, sources: &Sources, path: &Path) -> Result<()> {
 /// Which of the parts the texts are: the last.
 const TEXTS: usize = 5;
 
-/// The hash of a scene: of its name, background and field of view, and of all parts but the texts.
+/// The hash of a scene: of its name, background, field of view and placement, and of all parts but the texts.
 fn content(checksum: &Checksum, header: &Header, name: &str) -> [u8; 16] {
     let mut instead = bytemuck::bytes_of(&header.background).to_vec();
     instead.extend(header.field_of_view.to_le_bytes());
+    instead.extend(bytemuck::bytes_of(&header.offset));
+    instead.extend(header.exponent.to_le_bytes());
     instead.extend(name.as_bytes());
     checksum.with(&instead)
 }
@@ -160,11 +163,12 @@ pub fn reseal(bytes: &mut [u8]) {
     start.copy_from_slice(bytemuck::bytes_of(&header));
 }
 
-/// Reads a cache: a scene that has gone through all checks.
+/// Reads a cache: a scene that has gone through all checks. It has the placement that it was written with, or the one
+/// that is wanted.
 ///
 /// # Errors
 /// [`Error::Input`]: no cache, or one that is stale, truncated or corrupt.
-pub fn read(path: &Path, _: &Options) -> Result<Scene> {
+pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     let fault = |problem: &str, mend: &str| Error::file(path, None, problem, mend);
     let again = "make it again with `rtbench scenes convert`";
     let unreadable = |e: std::io::Error| match e.kind() {
@@ -230,6 +234,10 @@ pub fn read(path: &Path, _: &Options) -> Result<Scene> {
     if !(frames.is_empty() || camera_works) {
         return Err(fault("the cache is corrupt: its camera is none", again));
     }
+    let placement = Placement { offset: DVec3::from(header.offset), exponent: header.exponent };
+    if !placement.is_sound() {
+        return Err(fault("the cache is corrupt: its placement is none", again));
+    }
     let mut scene = Scene {
         name: texts.name,
         vertices,
@@ -241,8 +249,12 @@ pub fn read(path: &Path, _: &Options) -> Result<Scene> {
         camera: (!frames.is_empty()).then_some(SceneCamera { field_of_view, frames }),
         degenerate_triangles: header.degenerate as usize,
         warnings: texts.warnings,
+        placement,
     };
     scene.complete(parts.extent).map_err(|(problem, mend)| fault(&problem, mend))?;
+    if let Some(offset) = options.offset {
+        scene.move_to(Placement { offset, exponent: 0 });
+    }
     // Whoever makes something from this cache makes it from the cache's sources as well.
     sources.into_iter().for_each(|source| sources::add(|_| source));
     sources::add(|_| Source {

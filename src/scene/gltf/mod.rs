@@ -15,6 +15,7 @@
 mod accessor;
 mod buffers;
 mod head;
+mod locals;
 mod material;
 mod room;
 mod walk;
@@ -23,6 +24,7 @@ use super::mesh_builder::Limits;
 use super::{Options, Scene};
 use crate::error::{Error, Result};
 use buffers::Buffers;
+use locals::Locals;
 use std::path::Path;
 use walk::Walk;
 
@@ -49,13 +51,15 @@ pub fn read_bytes(path: &Path, bytes: &[u8], options: &Options) -> Result<Scene>
     limits.read(bytes.len());
     document_fits(json, &mut limits).map_err(at)?;
     head::check(json).map_err(at)?;
+    let locals = Locals::read(json);
+    limits.keep(locals.bytes()).map_err(|fault| at(room::too_much(fault)))?;
     let unchecked = gltf::Gltf::from_slice_without_validation(bytes).map_err(|error| refusal(path, error))?;
     let json = unchecked.document.into_json();
     positions_exist(&json).map_err(at)?;
     let document = gltf::Document::from_json(json).map_err(|error| refusal(path, error))?;
     let buffers = Buffers::load(path, &document, unchecked.blob.as_deref(), options).map_err(at)?;
     limits.read(buffers.beside());
-    let mut walk = Walk::new(&document, &buffers, limits, options.camera.as_deref());
+    let mut walk = Walk::new(&document, &buffers, limits, locals, options);
     walk.scene().map_err(at)?;
     walk.finish().map_err(at)
 }

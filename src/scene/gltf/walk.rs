@@ -1,12 +1,13 @@
 //! The walk over the nodes, which collects the scene.
 
 use super::buffers::Buffers;
+use super::locals::Locals;
 use super::room::{is_surface, positions, too_much};
 use super::{Fault, accessor, material};
 use crate::math::Vertex;
 use crate::scene::mesh_builder::Limits;
-use crate::scene::{Light, Material, Pose, Scene, SceneCamera, Triangle, lamps, normals};
-use glam::{DMat3, DMat4, DVec3, Mat4, Vec3};
+use crate::scene::{Light, Material, Options, Placement, Pose, Scene, SceneCamera, Triangle, lamps, normals};
+use glam::{DMat3, DMat4, DVec3, Vec3};
 use gltf::khr_lights_punctual::Kind;
 use gltf::mesh::Mode;
 use gltf::{Document, Node, Primitive};
@@ -32,14 +33,24 @@ pub struct Walk<'a> {
     pub(super) limits: Limits,
     /// Name of the camera that is wanted.
     camera: Option<&'a str>,
+    /// Transforms of nodes in double precision.
+    locals: Locals,
 }
 
 impl<'a> Walk<'a> {
-    /// Begins with the materials. `camera` is the one that is wanted, the first if none is.
-    pub fn new(document: &'a Document, buffers: &'a Buffers<'a>, limits: Limits, camera: Option<&'a str>) -> Walk<'a> {
+    /// Begins with the materials. `options` name the camera that is wanted, the first if none is, and the origin in
+    /// memory.
+    pub fn new(
+        document: &'a Document,
+        buffers: &'a Buffers<'a>,
+        limits: Limits,
+        locals: Locals,
+        options: &'a Options,
+    ) -> Walk<'a> {
         let (materials, emission): (Vec<Material>, Vec<Vec3>) =
             document.materials().map(|m| material::convert(&m)).unzip();
-        let mut scene = Scene { materials, ..Scene::default() };
+        let placement = Placement { offset: options.offset.unwrap_or(DVec3::ZERO), exponent: 0 };
+        let mut scene = Scene { materials, placement, ..Scene::default() };
         if document.materials().any(|m| material::has_texture(&m)) {
             scene.warnings.push("textures are left out: surfaces have their plain colours".into());
         }
@@ -60,8 +71,14 @@ impl<'a> Walk<'a> {
             coloured: false,
             repaired: 0,
             limits,
-            camera,
+            camera: options.camera.as_deref(),
+            locals,
         }
+    }
+
+    /// Where a point of the world lies in memory.
+    fn place(&self, world: &DMat4, point: DVec3) -> Vec3 {
+        self.scene.placement.place(world.transform_point3(point))
     }
 
     /// Goes over all nodes of the scene, parents before children, in file order.
@@ -88,7 +105,7 @@ impl<'a> Walk<'a> {
             }
         }
         while let Some((node, parent)) = placed.stack.pop() {
-            let world = parent * Mat4::from_cols_array_2d(&node.transform().matrix()).as_dmat4();
+            let world = parent * self.locals.of(&node);
             if !world.is_finite() {
                 return Err((format!("node {} has a transform that is not finite", node.index()), "repair it"));
             }
@@ -122,7 +139,7 @@ impl<'a> Walk<'a> {
             if matches!(light.kind(), Kind::Directional) {
                 self.directions.push((world.transform_vector3(DVec3::NEG_Z).as_vec3(), power));
             } else {
-                self.points.push((world.transform_point3(DVec3::ZERO).as_vec3(), power));
+                self.points.push((self.place(world, DVec3::ZERO), power));
             }
         }
         Ok(())
@@ -130,7 +147,7 @@ impl<'a> Walk<'a> {
 
     fn camera(&mut self, field_of_view: f32, world: &DMat4) {
         let field_of_view = field_of_view.to_degrees();
-        let position = world.transform_point3(DVec3::ZERO).as_vec3();
+        let position = self.place(world, DVec3::ZERO);
         let direction = world.transform_vector3(DVec3::NEG_Z).normalize_or_zero().as_vec3();
         let up = world.transform_vector3(DVec3::Y).normalize_or_zero().as_vec3();
         let looks = position.is_finite() && direction.cross(up).length() > 1e-3;
@@ -173,7 +190,8 @@ impl<'a> Walk<'a> {
             triangles.iter_mut().for_each(|t| t.vertices.swap(1, 2));
         }
         let first = self.scene.vertices.len();
-        let place = |p: Vec3| world.transform_point3(p.as_dvec3()).as_vec3();
+        let placement = self.scene.placement;
+        let place = |p: Vec3| placement.place(world.transform_point3(p.as_dvec3()));
         let vertices = &mut self.scene.vertices;
         match given {
             Some(given) => {

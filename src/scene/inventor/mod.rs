@@ -80,7 +80,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     let (includes, bytes) = Includes::new(path, options.outside)?;
     let mut reader = Reader {
         includes,
-        mesh: MeshBuilder::default(),
+        mesh: MeshBuilder::new(options.offset),
         segments: options.segments.unwrap_or(SEGMENTS),
         trees: HashMap::new(),
         camera: None,

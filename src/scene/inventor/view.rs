@@ -41,7 +41,8 @@ impl Reader {
             return Ok(());
         }
         let turn = node.rotation("orientation")?;
-        let position = state.transform.transform_point3(node.vector("position", DVec3::Z)?).as_vec3();
+        let position = state.transform.transform_point3(node.vector("position", DVec3::Z)?);
+        let position = (position - self.mesh.offset()).as_vec3();
         let along = |v: DVec3| state.transform.transform_vector3(turn * v).normalize_or_zero().as_vec3();
         let (direction, up) = (along(DVec3::NEG_Z), along(DVec3::Y));
         let field_of_view = node.number("heightAngle", FRAC_PI_4)?.to_degrees() as f32;

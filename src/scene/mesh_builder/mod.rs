@@ -12,9 +12,10 @@ mod revolve;
 mod shared;
 mod warnings;
 
+use super::placement::MAX_COORDINATE;
 use super::polygon::Triangulator;
 use super::text::Fault;
-use super::{Light, Material, Scene, Triangle};
+use super::{Light, Material, Placement, Scene, Triangle};
 use crate::math::Vertex;
 use foldhash::fast::RandomState;
 use glam::{DAffine3, DMat3, DVec3, Vec3};
@@ -65,10 +66,12 @@ struct Frame {
     normals: DMat3,
     /// True if it turns left into right.
     mirrored: bool,
+    /// The point of the file that is the origin in memory.
+    offset: DVec3,
 }
 
 impl Frame {
-    fn new(affine: DAffine3) -> Frame {
+    fn new(affine: DAffine3, offset: DVec3) -> Frame {
         let m = affine.matrix3;
         let sign = if m.determinant() < 0.0 { -1.0 } else { 1.0 };
         let cofactors = DMat3::from_cols(
@@ -76,15 +79,18 @@ impl Frame {
             m.z_axis.cross(m.x_axis) * sign,
             m.x_axis.cross(m.y_axis) * sign,
         );
-        Frame { affine, normals: cofactors, mirrored: sign < 0.0 }
+        Frame { affine, normals: cofactors, mirrored: sign < 0.0, offset }
     }
 
-    /// A vertex where the transform puts it; the normal is one that [`Frame::direction`] has turned.
+    /// A vertex where the transform puts it, rounded once it is near the origin; the normal is one that
+    /// [`Frame::direction`] has turned.
     #[inline(always)]
     fn place(&self, position: DVec3, normal: Vec3) -> Result<Vertex, Fault> {
+        let position = self.affine.transform_point3(position);
         // Adding zero makes -0 and 0 the same vertex
-        let position = self.affine.transform_point3(position).as_vec3() + Vec3::ZERO;
-        if position.is_finite() { Ok(Vertex::new(position, normal)) } else { Err(not_finite(position)) }
+        let placed = (position - self.offset).as_vec3() + Vec3::ZERO;
+        let within = position.abs().cmple(DVec3::splat(MAX_COORDINATE)).all();
+        if within { Ok(Vertex::new(placed, normal)) } else { Err(too_far(position)) }
     }
 
     /// A normal of any length as the transform turns it, of length one or zero.
@@ -96,8 +102,12 @@ impl Frame {
 }
 
 #[cold]
-fn not_finite(position: Vec3) -> Fault {
-    Fault::new(None, format!("a corner at {position} is not finite in single precision"), FINITE)
+fn too_far(position: DVec3) -> Fault {
+    let problem = match position.as_vec3().is_finite() {
+        true => format!("a corner at {position} lies beyond 1e18"),
+        false => format!("a corner at {} is not finite in single precision", position.as_vec3()),
+    };
+    Fault::new(None, problem, FINITE)
 }
 
 impl Default for MeshBuilder {
@@ -114,7 +124,7 @@ impl Default for MeshBuilder {
             known: HashMap::default(),
             current: Material::neutral(),
             current_index: None,
-            stack: vec![Frame::new(DAffine3::IDENTITY)],
+            stack: vec![Frame::new(DAffine3::IDENTITY, DVec3::ZERO)],
             triangulator: Triangulator::default(),
             corners: Vec::new(),
             limits: Limits::default(),
@@ -124,6 +134,17 @@ impl Default for MeshBuilder {
 }
 
 impl MeshBuilder {
+    /// A builder of a mesh whose origin in memory is this point of the file.
+    pub fn new(offset: Option<DVec3>) -> MeshBuilder {
+        let frame = Frame::new(DAffine3::IDENTITY, offset.unwrap_or(DVec3::ZERO));
+        MeshBuilder { stack: vec![frame], ..MeshBuilder::default() }
+    }
+
+    /// The point of the file that is the origin in memory.
+    pub fn offset(&self) -> DVec3 {
+        self.frame().offset
+    }
+
     /// Tells the size of a file that is being read: the mesh may grow with it. An included file counts once.
     pub fn read(&mut self, bytes: usize) {
         self.limits.read(bytes);
@@ -169,7 +190,7 @@ impl MeshBuilder {
             let problem = format!("more than {MAX_DEPTH} transforms inside each other");
             return Err(Fault::new(None, problem, "flatten the file's hierarchy"));
         }
-        self.stack.push(Frame::new(self.transform() * local));
+        self.stack.push(Frame::new(self.transform() * local, self.offset()));
         Ok(())
     }
 
@@ -181,7 +202,7 @@ impl MeshBuilder {
     /// Replaces the present transform by one from here to the scene.
     pub fn set_transform(&mut self, transform: DAffine3) {
         if let Some(top) = self.stack.last_mut() {
-            *top = Frame::new(transform);
+            *top = Frame::new(transform, top.offset);
         }
     }
 
@@ -211,7 +232,7 @@ impl MeshBuilder {
     /// # Errors
     /// Position or colour are beyond single precision.
     pub fn light(&mut self, position: DVec3, colour: DVec3) -> Result<(), Fault> {
-        let position = self.transform().transform_point3(position).as_vec3();
+        let position = (self.transform().transform_point3(position) - self.offset()).as_vec3();
         let colour = colour.as_vec3();
         if !position.is_finite() || !colour.is_finite() {
             return Err(Fault::new(None, format!("a light at {position} of colour {colour} is not finite"), FINITE));
@@ -330,12 +351,13 @@ impl MeshBuilder {
 
     /// The mesh with its materials, lights and warnings.
     pub fn finish(self) -> Scene {
+        let placement = Placement { offset: self.offset(), exponent: 0 };
         let MeshBuilder { mut vertices, mut triangles, materials, lights, warnings, shared, .. } = self;
         // Before the vectors are copied into smaller ones
         drop(shared);
         vertices.shrink_to_fit();
         triangles.shrink_to_fit();
-        Scene { vertices, triangles, materials, lights, warnings: warnings.lines(), ..Scene::default() }
+        Scene { vertices, triangles, materials, lights, warnings: warnings.lines(), placement, ..Scene::default() }
     }
 }
 

@@ -227,6 +227,9 @@ impl MeshBuilder {
 /// rounding two of them does.
 const POSITIONS: f64 = 1.0 / (1 << 20) as f64;
 
+/// The same in double precision.
+const DOUBLES: f64 = POSITIONS / (1 << 29) as f64;
+
 /// The same for unit normals, with room for what rounding does to a transform.
 const NORMALS: f64 = 1e-4;
 
@@ -278,7 +281,10 @@ impl Surface<'_> {
         let smallest = matrix.determinant().abs() / (squares / 2.0);
         let largest = squares.sqrt();
         let reach = self.profile.iter().map(|circle| circle.radius + circle.height.abs()).fold(0.0, f64::max);
-        let least = (largest * (self.origin.length() + reach) + translation.length()) * POSITIONS + TINY;
+        // As rounded in memory near the origin, and in the file's coordinates before that
+        let near = largest * reach + (frame.affine.transform_point3(self.origin) - frame.offset).length();
+        let far = largest * (self.origin.length() + reach) + translation.length();
+        let least = near * POSITIONS + far * DOUBLES + TINY;
         let step = 2.0 * (PI / self.outward.len() as f64).sin();
         let on_circle = |circle: &Circle| {
             circle.is_point()

@@ -1,9 +1,13 @@
 //! Lines and words of OBJ and MTL.
 
 use super::Fault;
+use crate::scene::placement::MAX_COORDINATE;
 use crate::scene::text::number;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use std::borrow::Cow;
+
+/// The largest coordinates.
+const MOST: DVec3 = DVec3::splat(MAX_COORDINATE);
 
 /// A text, line by line and word by word. A backslash before the end of a line continues it.
 #[derive(Clone)]
@@ -130,18 +134,31 @@ impl<'a> Lines<'a> {
         self.other_float(what)
     }
 
+    #[inline]
+    fn double(&mut self, what: &str) -> Result<f64, Fault> {
+        self.skip_blanks();
+        if let Some((value, length)) = self.bytes.get(self.at..).and_then(number::double) {
+            self.at += length;
+            return Ok(value);
+        }
+        let word = self.word();
+        word.and_then(number::double).map(|(value, _)| value).ok_or_else(|| self.no_number(word, what))
+    }
+
     /// A number that a backslash follows, or none.
     #[cold]
     fn other_float(&mut self, what: &str) -> Result<f32, Fault> {
         let word = self.word();
-        if let Some((value, _)) = word.and_then(number::float) {
-            return Ok(value);
-        }
+        word.and_then(number::float).map(|(value, _)| value).ok_or_else(|| self.no_number(word, what))
+    }
+
+    #[cold]
+    fn no_number(&self, word: Option<&[u8]>, what: &str) -> Fault {
         let problem = match word {
             Some(word) => format!("{what}: `{}` is not a number", printable(word)),
             None => format!("{what} has too few numbers"),
         };
-        Err(Fault::new(self.line, problem, "three numbers are needed"))
+        Fault::new(self.line, problem, "three numbers are needed")
     }
 
     #[inline]
@@ -149,15 +166,26 @@ impl<'a> Lines<'a> {
         Ok(Vec3::new(self.float(what)?, self.float(what)?, self.float(what)?))
     }
 
-    /// Three finite numbers.
+    /// A vertex, counted from a point: in double precision if that is not the origin.
     #[inline]
-    pub fn vector(&mut self, what: &str) -> Result<Vec3, Fault> {
-        let v = self.three(what)?;
-        if v.is_finite() {
-            return Ok(v);
+    pub fn position(&mut self, offset: DVec3) -> Result<Vec3, Fault> {
+        const WHAT: &str = "a vertex";
+        if offset == DVec3::ZERO {
+            let v = self.three(WHAT)?;
+            return if v.abs().cmple(MOST.as_vec3()).all() { Ok(v) } else { Err(self.too_far(v)) };
         }
-        let problem = format!("{what} has the values ({}, {}, {}), which are not finite", v.x, v.y, v.z);
-        Err(Fault::new(self.line, problem, "remove it or repair the export"))
+        let v = DVec3::new(self.double(WHAT)?, self.double(WHAT)?, self.double(WHAT)?);
+        if v.abs().cmple(MOST).all() { Ok((v - offset).as_vec3()) } else { Err(self.too_far(v.as_vec3())) }
+    }
+
+    #[cold]
+    fn too_far(&self, v: Vec3) -> Fault {
+        let (what, mend) = match v.is_finite() {
+            true => ("lie beyond 1e18", "scale the mesh down, or remove the vertex"),
+            false => ("are not finite", "remove it or repair the export"),
+        };
+        let problem = format!("a vertex has the values ({}, {}, {}), which {what}", v.x, v.y, v.z);
+        Fault::new(self.line, problem, mend)
     }
 
     /// Three numbers; what is not finite is zero and computed later.

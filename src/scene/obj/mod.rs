@@ -22,11 +22,11 @@ pub mod mtl;
 
 use super::mesh_builder::Warnings;
 use super::text::Home;
-use super::{Material, Options, Scene, lamps, normals};
+use super::{Material, Options, Placement, Scene, lamps, normals};
 use crate::error::{Error, Result};
 use crate::math::Vertex;
 use face::{Faces, Smoothing};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use lines::{Lines, printable};
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -89,6 +89,8 @@ struct Named {
 struct Reader<'a> {
     path: &'a Path,
     options: &'a Options,
+    /// Where positions are counted from.
+    placement: Placement,
     faces: Faces,
     materials: Vec<Material>,
     /// Colour that a material gives off, by its index.
@@ -115,6 +117,7 @@ impl<'a> Reader<'a> {
         Reader {
             path,
             options,
+            placement: Placement { offset: options.offset.unwrap_or(DVec3::ZERO), exponent: 0 },
             faces: Faces::default(),
             materials: Vec::new(),
             emission: Vec::new(),
@@ -132,7 +135,7 @@ impl<'a> Reader<'a> {
 
     fn line(&mut self, keyword: &[u8], lines: &mut Lines) -> Result<()> {
         match keyword {
-            b"v" => lines.vector("a vertex").map(|v| self.faces.positions.push(v)),
+            b"v" => lines.position(self.placement.offset).map(|v| self.faces.positions.push(v)),
             b"vn" => lines.normal().map(|v| self.faces.normals.push(v)),
             b"f" | b"fo" => {
                 let (material, before) = (self.material(), self.faces.triangles.len());
@@ -190,7 +193,8 @@ impl<'a> Reader<'a> {
             .collect();
         normals::normalise_or_smooth(&mut vertices, triangles);
         let lights = lamps::lights(&vertices, triangles, &self.emission);
-        let mut scene = Scene { vertices, lights, materials: self.materials, ..Scene::default() };
+        let (materials, placement) = (self.materials, self.placement);
+        let mut scene = Scene { vertices, lights, materials, placement, ..Scene::default() };
         scene.triangles = self.faces.triangles;
         scene.warnings = self.warnings.lines();
         let mut warn = |warning: String| scene.warnings.push(warning);

@@ -4,6 +4,7 @@ use super::header::{Element, Header, Kind};
 use super::source::{Bad, Source};
 use crate::math::Vertex;
 use crate::scene::mesh_builder::Limits;
+use crate::scene::placement::MAX_COORDINATE;
 use crate::scene::polygon::{MAX_CORNERS, Triangulator, newell};
 use crate::scene::text::{Fault, quote};
 use crate::scene::{MAX_ELEMENTS, Triangle};
@@ -34,13 +35,15 @@ pub struct Body {
 /// Where the values of a vertex go: index of the property of x, y, z, nx, ny, nz.
 const ROLES: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
 
-/// Reads the body. `list` is the index of the faces' list; `length` the number of the body's bytes.
+/// Reads the body. `list` is the index of the faces' list; `length` the number of the body's bytes; `offset` what
+/// positions are counted from, in double precision if there is one.
 pub fn read<S: Source>(
     header: &Header,
     vertex: &Element,
     (face, list): (&Element, usize),
     mut source: S,
     length: usize,
+    offset: Option<DVec3>,
 ) -> Result<Body, Fault> {
     for element in [vertex, face] {
         if element.count > MAX_ELEMENTS as u64 {
@@ -53,7 +56,14 @@ pub fn read<S: Source>(
     body.triangulator.read(length);
     for element in &header.elements {
         if std::ptr::eq(element, vertex) {
-            read_vertices(element, &mut source, &mut body)?;
+            match offset {
+                // A declared float is read as one, which takes less time
+                None | Some(DVec3::ZERO) => read_vertices(element, &mut source, &mut body, read_vertex)?,
+                Some(offset) => {
+                    let vertex = |roles: &[_], source: &mut S| read_far_vertex(roles, source, offset);
+                    read_vertices(element, &mut source, &mut body, vertex)?;
+                }
+            }
         } else if std::ptr::eq(element, face) {
             read_faces(element, list, vertex.count, &mut source, &mut body)?;
         } else if !element.properties.is_empty() {
@@ -134,8 +144,16 @@ fn one_row() -> String {
     "a line holds one element, in the order of the header's properties".to_owned()
 }
 
-fn read_vertices<S: Source>(element: &Element, source: &mut S, body: &mut Body) -> Result<(), Fault> {
-    let roles: Vec<(Kind, Option<usize>)> =
+/// The type of a property, and the index of what it is in [`ROLES`].
+type Role = (Kind, Option<usize>);
+
+fn read_vertices<S: Source>(
+    element: &Element,
+    source: &mut S,
+    body: &mut Body,
+    vertex: impl Fn(&[Role], &mut S) -> Result<[f32; 6], Bad>,
+) -> Result<(), Fault> {
+    let roles: Vec<Role> =
         element.properties.iter().map(|p| (p.kind, ROLES.iter().position(|&name| name == p.name))).collect();
     let scalar =
         |name: &&str| element.find(name).is_some_and(|i| matches!(element.properties[i].kind, Kind::Scalar(_)));
@@ -143,22 +161,53 @@ fn read_vertices<S: Source>(element: &Element, source: &mut S, body: &mut Body) 
     // Bounded: the count was held against the size of the file.
     body.vertices.reserve_exact(element.count as usize);
     for row in 0..element.count {
-        let values = read_vertex(&roles, source).map_err(|bad| explain(bad, source, element, row))?;
+        let values = vertex(&roles, source).map_err(|bad| explain(bad, source, element, row))?;
         let position = Vec3::new(values[0], values[1], values[2]);
-        if !position.is_finite() {
-            return Err(Fault::new(
-                source.line(),
-                format!("vertex {row} lies at ({}, {}, {}), which is not finite", position.x, position.y, position.z),
-                "coordinates must be finite in single precision: remove the vertex or repair the export",
-            ));
+        if !position.abs().cmple(MOST).all() {
+            return Err(too_far(source.line(), row, position));
         }
         body.vertices.push(Vertex::new(position, Vec3::new(values[3], values[4], values[5])));
     }
     Ok(())
 }
 
+/// The largest coordinates.
+const MOST: Vec3 = Vec3::splat(MAX_COORDINATE as f32);
+
+#[cold]
+fn too_far(line: Option<usize>, row: u64, position: Vec3) -> Fault {
+    let (what, mend) = match position.is_finite() {
+        true => ("beyond 1e18", "scale the mesh down, or remove the vertex"),
+        false => {
+            ("not finite", "coordinates must be finite in single precision: remove the vertex or repair the export")
+        }
+    };
+    let Vec3 { x, y, z } = position;
+    Fault::new(line, format!("vertex {row} lies at ({x}, {y}, {z}), which is {what}"), mend)
+}
+
+/// A vertex whose position is counted from a point, and rounded then. The normal is a float all the same.
+fn read_far_vertex<S: Source>(roles: &[Role], source: &mut S, offset: DVec3) -> Result<[f32; 6], Bad> {
+    let mut values = [0.0; 6];
+    source.begin()?;
+    for &(kind, role) in roles {
+        match (kind, role) {
+            (Kind::Scalar(scalar), Some(role @ 0..3)) => {
+                let value = source.double(scalar)?;
+                // What was refused before anything was moved is refused after that as well
+                let within = value.abs() <= MAX_COORDINATE;
+                values[role] = if within { (value - offset[role]) as f32 } else { value as f32 };
+            }
+            (Kind::Scalar(scalar), Some(role)) => values[role] = source.float(scalar)?,
+            _ => skip(kind, source)?,
+        }
+    }
+    source.end()?;
+    Ok(values)
+}
+
 #[inline(always)]
-fn read_vertex<S: Source>(roles: &[(Kind, Option<usize>)], source: &mut S) -> Result<[f32; 6], Bad> {
+fn read_vertex<S: Source>(roles: &[Role], source: &mut S) -> Result<[f32; 6], Bad> {
     let mut values = [0.0; 6];
     source.begin()?;
     for &(kind, role) in roles {

@@ -14,9 +14,10 @@ mod header;
 mod source;
 
 use super::text::Fault;
-use super::{Scene, normals};
+use super::{Options, Placement, Scene, normals};
 use crate::error::Result;
 use body::Body;
+use glam::DVec3;
 use header::{Element, Encoding, Header, Kind};
 use source::{Ascii, Binary};
 use std::path::Path;
@@ -25,12 +26,12 @@ use std::path::Path;
 ///
 /// # Errors
 /// [`crate::Error::Input`] for whatever is wrong with the file.
-pub fn read(path: &Path) -> Result<Scene> {
+pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     let bytes = super::read_text(path)?;
-    let body = parse(&bytes).map_err(|fault| fault.of(path))?;
+    let body = parse(&bytes, options.offset).map_err(|fault| fault.of(path))?;
     // The file's bytes are no longer needed: less memory for what follows.
     drop(bytes);
-    Ok(finish(body))
+    Ok(finish(body, options.offset))
 }
 
 /// Reads a file that is already in memory; `path` stands in errors only.
@@ -38,21 +39,21 @@ pub fn read(path: &Path) -> Result<Scene> {
 /// # Errors
 /// As [`read`].
 pub fn read_bytes(path: &Path, bytes: &[u8]) -> Result<Scene> {
-    let body = parse(bytes).map_err(|fault| fault.of(path))?;
-    Ok(finish(body))
+    let body = parse(bytes, None).map_err(|fault| fault.of(path))?;
+    Ok(finish(body, None))
 }
 
-fn parse(bytes: &[u8]) -> Result<Body, Fault> {
+fn parse(bytes: &[u8], offset: Option<DVec3>) -> Result<Body, Fault> {
     let header = header::parse(bytes)?;
     let vertex = vertex_element(&header)?;
     let face = face_element(&header)?;
     let body = &bytes[header.body..];
     match header.encoding {
         Encoding::Ascii => {
-            body::read(&header, vertex, face, Ascii::new(body, header.body_line, header.newline), body.len())
+            body::read(&header, vertex, face, Ascii::new(body, header.body_line, header.newline), body.len(), offset)
         }
-        Encoding::LittleEndian => body::read(&header, vertex, face, Binary::<false>::new(body), body.len()),
-        Encoding::BigEndian => body::read(&header, vertex, face, Binary::<true>::new(body), body.len()),
+        Encoding::LittleEndian => body::read(&header, vertex, face, Binary::<false>::new(body), body.len(), offset),
+        Encoding::BigEndian => body::read(&header, vertex, face, Binary::<true>::new(body), body.len(), offset),
     }
 }
 
@@ -108,8 +109,9 @@ fn face_element(header: &Header) -> Result<(&Element, usize), Fault> {
 }
 
 /// Normals and warnings.
-fn finish(body: Body) -> Scene {
-    let mut scene = Scene { vertices: body.vertices, triangles: body.triangles, ..Scene::default() };
+fn finish(body: Body, offset: Option<DVec3>) -> Scene {
+    let placement = Placement { offset: offset.unwrap_or(DVec3::ZERO), exponent: 0 };
+    let mut scene = Scene { vertices: body.vertices, triangles: body.triangles, placement, ..Scene::default() };
     if body.has_normals {
         let repaired = normals::normalise_or_smooth(&mut scene.vertices, &scene.triangles);
         if repaired > 0 {

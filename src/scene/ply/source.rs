@@ -28,6 +28,8 @@ pub trait Source {
     fn end(&mut self) -> Result<(), Bad>;
     /// The next value, rounded to single precision.
     fn float(&mut self, kind: Scalar) -> Result<f32, Bad>;
+    /// The next value in double precision, whatever the file declares: text may have more digits than a float.
+    fn double(&mut self, kind: Scalar) -> Result<f64, Bad>;
     /// The next value of an integer type.
     fn integer(&mut self, kind: Scalar) -> Result<i64, Bad>;
     /// Passes over `n` values.
@@ -113,6 +115,13 @@ impl Source for Ascii<'_> {
     }
 
     #[inline]
+    fn double(&mut self, _kind: Scalar) -> Result<f64, Bad> {
+        let (value, length) = number::double(self.seek()?).ok_or(Bad::Number)?;
+        self.at += length;
+        Ok(value)
+    }
+
+    #[inline]
     fn integer(&mut self, _kind: Scalar) -> Result<i64, Bad> {
         let (value, length) = number::integer(self.seek()?).ok_or(Bad::Integer)?;
         self.at += length;
@@ -188,6 +197,15 @@ impl<const BIG_ENDIAN: bool> Source for Binary<'_, BIG_ENDIAN> {
             Scalar::F32 => value!(self, f32),
             Scalar::F64 => value!(self, f64) as f32,
             _ => self.integer(kind)? as f32,
+        })
+    }
+
+    #[inline]
+    fn double(&mut self, kind: Scalar) -> Result<f64, Bad> {
+        Ok(match kind {
+            Scalar::F32 => value!(self, f32).into(),
+            Scalar::F64 => value!(self, f64),
+            _ => self.integer(kind)? as f64,
         })
     }
 

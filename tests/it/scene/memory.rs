@@ -124,6 +124,17 @@ fn built_files_take_four_times_their_scene_at_most() {
         "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1 }] }],
         "nodes": [{ "mesh": 0 }],
     });
+    // A scene that is far away is read twice
+    let far = |text: &str, keyword: &str| {
+        let numbers = |rest: &str| rest.split(' ').map(|x| x.parse().ok()).collect::<Option<Vec<f64>>>();
+        let moved = |line: &str| match line.strip_prefix(keyword).and_then(numbers).as_deref() {
+            Some([x, y, z]) => format!("{keyword}{} {y} {}\n", x + 5e6, z - 4e6),
+            _ => format!("{line}\n"),
+        };
+        text.lines().map(moved).collect::<String>()
+    };
+    write("far.ply", far(&ply, "").as_bytes());
+    write("far.obj", far(&obj, "v ").as_bytes());
     write("built.ply", ply.as_bytes());
     write("built.obj", obj.as_bytes());
     write("built.mgf", mgf.as_bytes());
