@@ -64,23 +64,29 @@ fn read_cell(cell: vec3<i32>) -> vec2<u32> {
     return read_pair(c.x + structure.resolution.x * (c.y + structure.resolution.y * c.z));
 }
 
+// The nearest of the borders ahead: where the ray leaves its cell.
+struct Border {
+    t: f32,
+    axis: vec3<bool>, // the first of equals
+}
+
+fn nearest_border(walk: Walk) -> Border {
+    let t = walk.t_next;
+    let x = t.x <= t.y && t.x <= t.z;
+    let y = t.y <= t.z;
+    return Border(select(select(t.z, t.y, y), t.x, x), vec3<bool>(x, !x && y, !x && !y));
+}
+
 // What a step leads to: out of the grid, into the neighbour behind the nearest border, or, where several borders are at its
 // distance, nowhere yet: cross_borders must follow.
 const OUTSIDE: u32 = 0u;
 const INSIDE: u32 = 1u;
 const TIED: u32 = 2u;
 
-fn advance(ray: Ray, walk: ptr<function, Walk>) -> u32 {
-    let t = (*walk).t_next;
-    var chosen = vec3<bool>(false, false, true);
-    if (t.x <= t.y && t.x <= t.z) {
-        chosen = vec3<bool>(true, false, false);
-    } else if (t.y <= t.z) {
-        chosen = vec3<bool>(false, true, false);
-    }
-    let cell = select((*walk).cell, (*walk).cell + (*walk).step, chosen);
-    let t_next = select(t, border_distance(ray, cell + (*walk).ahead), chosen);
-    if (min(min(t_next.x, t_next.y), t_next.z) <= min(min(t.x, t.y), t.z)) {
+fn advance(ray: Ray, border: Border, walk: ptr<function, Walk>) -> u32 {
+    let cell = select((*walk).cell, (*walk).cell + (*walk).step, border.axis);
+    let t_next = select((*walk).t_next, border_distance(ray, cell + (*walk).ahead), border.axis);
+    if (any(t_next <= vec3<f32>(border.t))) {
         return TIED;
     }
     (*walk).cell = cell;
@@ -94,7 +100,7 @@ fn advance(ray: Ray, walk: ptr<function, Walk>) -> u32 {
 // Called between two loops of steps and not within one: a software driver goes through the text of a branch for every
 // step, whether a ray takes it or not.
 fn cross_borders(ray: Ray, walk: ptr<function, Walk>, best: ptr<function, Best>) -> bool {
-    let t = vec3<f32>(min(min((*walk).t_next.x, (*walk).t_next.y), (*walk).t_next.z));
+    let t = vec3<f32>(nearest_border(*walk).t);
     let first = (*walk).cell;
     let end = (*walk).end - (*walk).step;
     loop {

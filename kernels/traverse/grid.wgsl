@@ -24,10 +24,11 @@ fn nearest_hit(ray: Ray, alive: bool) -> u32 {
             }
             // A hit ends the search only inside this cell: in front of a farther one something nearer may lie. At the very
             // border the next cell may hold a triangle at the same distance with a lower index.
-            if (best.t < min(min(walk.t_next.x, walk.t_next.y), walk.t_next.z)) {
+            let border = nearest_border(walk);
+            if (best.t < border.t) {
                 break;
             }
-            way = advance(ray, &walk);
+            way = advance(ray, border, &walk);
             if (way != INSIDE) {
                 break;
             }
@@ -59,10 +60,11 @@ fn any_hit(ray: Ray, limit: f32, alive: bool) -> bool {
                     return true;
                 }
             }
-            if (min(min(walk.t_next.x, walk.t_next.y), walk.t_next.z) > limit) {
+            let border = nearest_border(walk);
+            if (border.t > limit) {
                 return false;
             }
-            way = advance(ray, &walk);
+            way = advance(ray, border, &walk);
             if (way != INSIDE) {
                 break;
             }

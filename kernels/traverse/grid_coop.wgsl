@@ -148,11 +148,11 @@ fn find(ray: Ray, limit: f32, anything: bool, alive: bool) -> Found {
 
 // Leaves a cell; OUTSIDE also at the end of the search.
 fn go_on(ray: Ray, limit: f32, anything: bool, best: f32, walk: ptr<function, Walk>) -> u32 {
-    let t_exit = min(min((*walk).t_next.x, (*walk).t_next.y), (*walk).t_next.z);
-    if (select(best < t_exit, best < limit || t_exit > limit, anything)) {
+    let border = nearest_border(*walk);
+    if (select(best < border.t, best < limit || border.t > limit, anything)) {
         return OUTSIDE;
     }
-    return advance(ray, walk);
+    return advance(ray, border, walk);
 }
 
 fn cross_borders_to(ray: Ray, walk: ptr<function, Walk>, best: ptr<function, Found>) -> bool {

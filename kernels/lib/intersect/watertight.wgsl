@@ -7,9 +7,11 @@
 
 // A triangle as a ray sees it.
 struct Projected {
-    along: vec3<f32>,    // distances of the corners along the major axis
-    edges: vec3<f32>,    // twice the signed areas between the ray and the edge opposite each corner
-    interval: vec2<f32>, // of the triangle's own box
+    p0: vec3<f32>,    // distances of the corners, by axis
+    p1: vec3<f32>,
+    p2: vec3<f32>,
+    along: vec3<f32>, // of the corners, along the major axis
+    edges: vec3<f32>, // twice the signed areas between the ray and the edge opposite each corner
     inside: bool,
 }
 
@@ -30,26 +32,31 @@ fn project(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> Projected {
     let c = across(p2, ray.major) * scale - along.z * shear;
     let p = vec3<f32>(b.x * c.y, c.x * a.y, a.x * b.y);
     let q = vec3<f32>(b.y * c.x, c.y * a.x, a.y * b.x);
-    let near = min(min(p0, p1), p2) - ray.slack;
-    let far = max(max(p0, p1), p2) + ray.slack;
-    let interval = vec2<f32>(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
-    return Projected(along, p - q, interval, all(p >= q) != all(p <= q));
+    return Projected(p0, p1, p2, along, p - q, all(p >= q) != all(p <= q));
 }
 
-fn hit_of(seen: Projected) -> TriangleHit {
+// The interval of the triangle's own box.
+fn own_interval(ray: Ray, seen: Projected) -> vec2<f32> {
+    let near = min(min(seen.p0, seen.p1), seen.p2) - ray.slack;
+    let far = max(max(seen.p0, seen.p1), seen.p2) + ray.slack;
+    return vec2<f32>(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
+}
+
+fn hit_within(seen: Projected, interval: vec2<f32>) -> TriangleHit {
     let e = seen.edges;
     let sum = e.x + e.y + e.z;
     let area = select(sum, 1.0, sum == 0.0);
     let t = (e.x * seen.along.x + e.y * seen.along.y + e.z * seen.along.z) / area;
-    return TriangleHit(min(max(t, seen.interval.x), seen.interval.y), e.y / area, e.z / area);
+    return TriangleHit(min(max(t, interval.x), interval.y), e.y / area, e.z / area);
 }
 
 fn intersect(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> TriangleHit {
     let seen = project(ray, v0, v1, v2);
     var hit = TriangleHit(NO_HIT, 0.0, 0.0);
-    if (seen.inside && seen.interval.x <= seen.interval.y) {
-        let found = hit_of(seen);
-        if (found.t > 0.0) {
+    if (seen.inside) {
+        let interval = own_interval(ray, seen);
+        let found = hit_within(seen, interval);
+        if (interval.x <= interval.y && found.t > 0.0) {
             hit = found;
         }
     }
@@ -58,5 +65,6 @@ fn intersect(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> TriangleH
 
 // Of a triangle that was hit: it cannot miss, however a device compiles it.
 fn surface_hit(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> TriangleHit {
-    return hit_of(project(ray, v0, v1, v2));
+    let seen = project(ray, v0, v1, v2);
+    return hit_within(seen, own_interval(ray, seen));
 }
