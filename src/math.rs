@@ -26,7 +26,7 @@ pub const MISS: u32 = u32::MAX;
 /// Farther than any hit. Not infinity: WGSL lets an implementation assume that there is none.
 pub const T_MAX: f32 = 3.0e38;
 
-/// Stands for `1 / 0`, see [`inverse`]: 2^80. Coordinates up to 1e13 times this are still floats.
+/// Replaces `1 / 0`, see [`inverse`]: 2^80. A coordinate of up to 1e13 multiplied by it is still a float.
 pub const INVERSE_OF_ZERO: f32 = (1_u128 << 80) as f32;
 
 /// Added to both ends of a triangle's interval on an axis on which the direction is zero: 2^49, farther than any hit.
@@ -114,7 +114,7 @@ pub struct Ray {
     pub origin_max: Vec3A,
     /// Powers of two near the direction's components, see [`crate::intersect::watertight`].
     pub scale: Vec3A,
-    /// `scale`, but zero on axes on which the direction is zero.
+    /// `scale`, but zero on axes on which the direction is zero, the major axis excepted.
     pub shear: Vec3A,
     /// [`SLACK`] on axes on which the direction is zero, and zero on the others.
     pub slack: Vec3A,
@@ -131,8 +131,7 @@ impl Ray {
         let parallel = inv.cmpeq(Vec3A::splat(INVERSE_OF_ZERO));
         let shift = (origin.abs() * PLANE_SHIFT).max(Vec3A::splat(PLANE_SHIFT_MIN));
         let shift = Vec3A::select(parallel, shift, Vec3A::ZERO);
-        let scale = inv.to_array().map(power_below);
-        let scale = Vec3A::from_array(scale);
+        let scale = Vec3A::from_array(inv.to_array().map(power_below));
         let steep = inv.abs();
         let major = if steep.x <= steep.y && steep.x <= steep.z {
             0
@@ -141,6 +140,8 @@ impl Ray {
         } else {
             2
         };
+        let mut shear = Vec3A::select(parallel, Vec3A::ZERO, scale);
+        shear[major] = scale[major];
         Ray {
             origin: with_lane(origin),
             direction,
@@ -148,7 +149,7 @@ impl Ray {
             origin_min: with_lane(origin + shift),
             origin_max: with_lane(origin - shift),
             scale,
-            shear: Vec3A::select(parallel, Vec3A::ZERO, scale),
+            shear,
             slack: Vec3A::select(parallel, Vec3A::splat(SLACK), Vec3A::ZERO),
             major,
         }

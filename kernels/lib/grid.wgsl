@@ -40,7 +40,7 @@ fn start_walk(ray: Ray, limit: f32) -> Walk {
     walk.cell = vec3<i32>(min(max(guess, vec3<f32>(0.0, 0.0, 0.0)), vec3<f32>(resolution - 1)));
     loop {
         let t = border_distance(ray, walk.cell + walk.ahead);
-        let behind = select(t < vec3<f32>(t_start), t <= vec3<f32>(0.0), parallel) & walk.cell != last;
+        let behind = select(t < vec3<f32>(t_start), t <= vec3<f32>(0.0), parallel) & (walk.cell != last);
         if (!walk.inside || !any(behind)) {
             break;
         }
@@ -48,7 +48,7 @@ fn start_walk(ray: Ray, limit: f32) -> Walk {
     }
     loop {
         let t = border_distance(ray, walk.cell + 1 - walk.ahead);
-        let beyond = select(t >= vec3<f32>(t_start), t > vec3<f32>(0.0), parallel) & walk.cell != first;
+        let beyond = select(t >= vec3<f32>(t_start), t > vec3<f32>(0.0), parallel) & (walk.cell != first);
         if (!walk.inside || !any(beyond)) {
             break;
         }
@@ -97,14 +97,14 @@ fn advance(ray: Ray, border: Border, walk: ptr<function, Walk>) -> u32 {
 // Crosses all borders at the distance of the nearest one; false if that leaves the grid. The ray touches every cell between
 // them: those before the last one are tested here. From far away, that may be many.
 //
-// Called between two loops of steps and not within one: a software driver goes through the text of a branch for every
+// It is called between two loops of steps and not within one: a software driver goes through the text of a branch for every
 // step, whether a ray takes it or not.
 fn cross_borders(ray: Ray, walk: ptr<function, Walk>, best: ptr<function, Best>) -> bool {
     let t = vec3<f32>(nearest_border(*walk).t);
     let first = (*walk).cell;
     let end = (*walk).end - (*walk).step;
     loop {
-        let further = (*walk).t_next <= t & (*walk).cell != end;
+        let further = ((*walk).t_next <= t) & ((*walk).cell != end);
         if (!any(further)) {
             break;
         }

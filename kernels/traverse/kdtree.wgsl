@@ -2,7 +2,7 @@
 // et al. 2007), in the thesis's order. Twin: src/cpu/traverse/kdtree.rs.
 //
 // A restart resumes by the path taken, not by the distance reached: from afar, many cells have ends that round to the
-// same distance, and none of them may be skipped or visited for ever.
+// same distance, and none of them may be skipped or visited endlessly.
 
 //!include lib/alone.wgsl
 
@@ -51,7 +51,7 @@ fn descend(ray: Ray, node: vec2<u32>, d: ptr<function, Descent>) {
     let t_from = (split - on_axis(ray.origin_min, axis)) * inv;
     let t_to = (split - on_axis(ray.origin_max, axis)) * inv;
     // Ordered along the ray. A plane behind the origin has t_to < 0 <= t_min: only the far side is left, which is the
-    // side of the origin, as in the thesis. A cell whose two ends round to one distance is visited all the same, as a
+    // side of the origin, as in the thesis. A cell whose two ends round to one distance is still visited, as a
     // triangle may lie in it alone.
     let left = (*d).node + 1u;
     let right = node.y >> 2u;

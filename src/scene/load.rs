@@ -118,12 +118,12 @@ fn finish(mut scene: Scene, place: &str, options: &Options) -> Result<Scene> {
     let extent = Extent::of(&scene);
     let fault = |(problem, mend): (String, _)| Error::file(path, None, problem, mend);
     scene.complete(extent).map_err(fault)?;
-    let (bounds, normal) = scene.survey();
+    let bounds = scene.survey();
     scene.size_fault(bounds).map_or(Ok(()), |found| Err(fault(found)))?;
-    scene.normalise(bounds, normal);
+    scene.normalise(bounds);
     // What is scaled may have left the range of floats
     if let Some(i) = scene.lights.iter().position(|light| !light.position.is_finite()) {
-        return Err(fault((format!("light {i} is too far away from a scene so small"), "bring it nearer")));
+        return Err(fault((format!("light {i} is too far away for so small a scene"), "bring it nearer")));
     }
     Ok(scene)
 }

@@ -332,23 +332,21 @@ impl Scene {
         self.first_fault(extent).map_or(Ok(()), Err)
     }
 
-    /// Counts the triangles without area of a scene that has been checked, and finds the box around all of them and
-    /// the largest coordinate of all products of two edges of a triangle.
-    fn survey(&mut self) -> (Aabb, f64) {
+    /// Counts the triangles without area of a scene that has been checked, and finds the box around all of them.
+    fn survey(&mut self) -> Aabb {
         let vertices = &self.vertices;
-        type Found = (usize, Aabb, f64);
-        let nothing: Found = (0, Aabb::EMPTY, 0.0);
-        let add = |(degenerate, bounds, largest): Found, triangle: &Triangle| {
+        type Found = (usize, Aabb);
+        let nothing: Found = (0, Aabb::EMPTY);
+        let add = |(degenerate, bounds): Found, triangle: &Triangle| {
             let corners = triangle.vertices.map(|v| vertices[v as usize].position);
-            let normal = normals::product(corners);
             let bounds = corners.iter().fold(bounds, |b, &p| Aabb { min: b.min.min(p), max: b.max.max(p) });
-            (degenerate + usize::from(normal == DVec3::ZERO), bounds, largest.max(normal.abs().max_element()))
+            (degenerate + usize::from(normals::is_degenerate(corners)), bounds)
         };
-        let both = |a: Found, b: Found| (a.0 + b.0, a.1.union(b.1), a.2.max(b.2));
+        let both = |a: Found, b: Found| (a.0 + b.0, a.1.union(b.1));
         let chunks = self.triangles.par_chunks(1 << 14).map(|chunk| chunk.iter().fold(nothing, add));
-        let (degenerate, bounds, normal) = chunks.reduce(|| nothing, both);
+        let (degenerate, bounds) = chunks.reduce(|| nothing, both);
         self.degenerate_triangles = degenerate;
-        (bounds, normal)
+        bounds
     }
 }
 

@@ -69,13 +69,8 @@ fn scale(vertices: &[Vertex]) -> f32 {
 /// True if the triangle has no area. In double precision the products are exact for all but far-fetched coordinates, so
 /// this is zero and not a tolerance.
 pub fn is_degenerate(corners: [Vec3; 3]) -> bool {
-    product(corners) == DVec3::ZERO
-}
-
-/// The product of two edges of a triangle: its normal, of twice its area's length.
-pub fn product([a, b, c]: [Vec3; 3]) -> DVec3 {
-    let [a, b, c]: [DVec3; 3] = [a, b, c].map(Vec3::as_dvec3);
-    (b - a).cross(c - a)
+    let [a, b, c]: [DVec3; 3] = corners.map(Vec3::as_dvec3);
+    (b - a).cross(c - a) == DVec3::ZERO
 }
 
 #[cfg(test)]

@@ -13,25 +13,22 @@ use rayon::prelude::*;
 
 /// How many diagonals of a scene its coordinates may be away from the origin before the scene is moved there. Up to
 /// here rounding moves a coordinate by at most `2^-24 * 64` = 4e-6 of the diagonal, less than half of the surface
-/// epsilon (1e-5).
+/// epsilon.
 pub const FAR: f64 = 64.0;
 
 /// Coordinates beyond this are refused, and extents below its inverse.
 pub const MAX_COORDINATE: f64 = 1e18;
 
-/// Extents between these, 2^-20 and 2^24, stay as they are: products of lengths are floats, and rays from 2^23 diagonals
-/// away have distances below [`crate::math::SLACK`].
-const COMFORTABLE: std::ops::RangeInclusive<f64> = 1.0 / (1 << 20) as f64..=(1 << 24) as f64;
+/// Extents between these, 2^-8 and 2^24, stay as they are: products of lengths are floats, rays from 2^23 diagonals away
+/// have distances below [`crate::math::SLACK`], and [`crate::math::PLANE_SHIFT_MIN`] is small compared with the scene.
+const COMFORTABLE: std::ops::RangeInclusive<f64> = 1.0 / (1 << 8) as f64..=(1 << 24) as f64;
 
-/// The largest normal of a triangle (the product of two edges) that leaves the scene as it is: its square, of which
-/// shading takes the root, is at most 3 * 2^122, and floats end at 2^128. The smallest are no trouble: at an extent
-/// of 2^-20, triangles a thousand times smaller than the scene have squares of 2^-120, and normal floats begin at
-/// 2^-126.
-const LARGEST_NORMAL: f64 = (1u64 << 61) as f64;
+/// A light that is farther away than this, in units of about the scene's extent, is brought nearer in its direction:
+/// lights do not fade, the direction changes by 2^-40, and squares of distances stay in range.
+const FARTHEST_LIGHT: f64 = (1u64 << 40) as f64;
 
-/// A light of a scaled scene that is farther away than this, in units of about the scene's extent, is brought nearer
-/// in its direction: lights do not fade, the direction changes by 2^-40, and squares of distances stay in range.
-const FARTHEST_LIGHT: f32 = (1u64 << 40) as f32;
+/// No light is farther away than this: the sum of three squares of it is a float.
+const FARTHEST_OF_ALL: f64 = (1u64 << 60) as f64;
 
 /// What leads from a file's coordinates (behind `up=` and `scale=`) to those in memory: `(file - offset) * 2^exponent`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -63,7 +60,7 @@ impl Placement {
         *self == Placement::IDENTITY
     }
 
-    /// True for one that a scene may have: what may be damaged is held against this.
+    /// True for one that a scene may have: it is used to check placements read from caches.
     pub(super) fn is_sound(&self) -> bool {
         self.offset.is_finite() && self.exponent.abs() <= 256
     }
@@ -218,29 +215,27 @@ impl Scene {
         self.placement = placement;
     }
 
-    /// Scales a scene by a power of two if its extent in the file is not comfortable. `bounds` is the box around its
-    /// triangles, and `normal` the largest coordinate of the product of two of a triangle's edges.
-    pub(super) fn normalise(&mut self, bounds: Aabb, normal: f64) {
+    /// Scales a scene by a power of two if its extent in the file is not comfortable, and brings lights nearer that are
+    /// too far away. `bounds` is the box around its triangles.
+    pub(super) fn normalise(&mut self, bounds: Aabb) {
         let extent = self.placement.length(bounds.extent().max_element());
         if !(extent > 0.0 && extent.is_finite()) {
             return;
         }
-        let normal = normal * power_of_two(-2 * self.placement.exponent);
-        let comfortable = COMFORTABLE.contains(&extent) && normal <= LARGEST_NORMAL;
-        let exponent = if comfortable { 0 } else { -exponent_of(extent) };
+        let exponent = if COMFORTABLE.contains(&extent) { 0 } else { -exponent_of(extent) };
         let change = exponent - self.placement.exponent;
-        if change == 0 {
-            return;
+        if change != 0 {
+            let factor = power_of_two(change);
+            self.map_positions(|p| (p.as_dvec3() * factor).as_vec3());
+            self.placement.exponent = exponent;
         }
-        let factor = power_of_two(change);
-        self.map_positions(|p| (p.as_dvec3() * factor).as_vec3());
+        let farthest = (FARTHEST_LIGHT * extent * power_of_two(exponent)).min(FARTHEST_OF_ALL) as f32;
         for light in &mut self.lights {
             let distance = light.position.abs().max_element();
-            if distance > FARTHEST_LIGHT && distance.is_finite() {
-                light.position *= FARTHEST_LIGHT / distance;
+            if distance > farthest && distance.is_finite() {
+                light.position *= farthest / distance;
             }
         }
-        self.placement.exponent = exponent;
     }
 
     /// Changes the positions of vertices, lights and camera.

@@ -2,7 +2,7 @@
 //! `kernels/traverse/kdtree.wgsl`.
 //!
 //! A restart resumes by the path taken, not by the distance reached: from afar, many cells have ends that round to the
-//! same distance, and none of them may be skipped or visited for ever.
+//! same distance, and none of them may be skipped or visited endlessly.
 
 use super::{Best, TraverseAlone, Triangles};
 use crate::accel::kdtree::{KdNode, KdTree as Tree};
@@ -69,8 +69,8 @@ impl<const MOST: usize> Descent<MOST> {
         let t_from = (node.split() - ray.origin_min[axis]) * inv;
         let t_to = (node.split() - ray.origin_max[axis]) * inv;
         // Ordered along the ray. A plane behind the origin has t_to < 0 <= t_min: only the far side is left, which is
-        // the side of the origin, as in the thesis. A cell whose two ends round to one distance is visited all the
-        // same, as a triangle may lie in it alone.
+        // the side of the origin, as in the thesis. A cell whose two ends round to one distance is still visited,
+        // as a triangle may lie in it alone.
         let (left, right) = (self.node + 1, node.right());
         let (near, far) = if inv < 0.0 { (right, left) } else { (left, right) };
         if t_from > self.t_max {
