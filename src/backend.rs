@@ -71,8 +71,8 @@ pub struct CountedPixel {
 }
 
 /// How far off a surface secondary rays start, in scene units: far above the rounding of coordinates of the scene's
-/// size (about 1e-7 of it), far below anything that is seen. In a scene that lies far from the origin (`origin=keep`)
-/// coordinates are rounded more coarsely, and what counts is their size: [`ROUNDINGS`].
+/// size (about 1e-7 of it), far below anything that is seen. In a scene more than about 21 diagonals from
+/// the origin, coordinates are rounded more coarsely, and their size decides: [`ROUNDINGS`].
 pub fn surface_epsilon(bounds: Aabb) -> f32 {
     let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
     (bounds.diagonal() * 1.0e-5).max(reach * ROUNDINGS)
@@ -84,10 +84,26 @@ pub fn shadow_reach(bounds: Aabb) -> f32 {
     bounds.diagonal() * 4.0
 }
 
-/// The surface epsilon beside the largest coordinate: eight times what rounding one of that size does (2^-24).
+/// The smallest surface epsilon as a share of the largest coordinate: eight times its rounding (2^-24).
 /// Measured with a scene of curved surfaces and shadows, 400 to 4,000 diagonals away: acne ends at two roundings, and
 /// from sixteen on light comes through the seams of shadows.
 const ROUNDINGS: f32 = 8.0 / (1 << 24) as f32;
+
+/// Lengths that secondary rays depend on, in scene units.
+#[derive(Clone, Copy, Debug)]
+pub struct Lengths {
+    /// How far off a surface they start, see [`surface_epsilon`].
+    pub epsilon: f32,
+    /// How far from a point shadow rays from a light start at most, see [`shadow_reach`].
+    pub reach: f32,
+}
+
+impl Lengths {
+    /// Those of a scene with these bounds.
+    pub fn new(bounds: Aabb) -> Lengths {
+        Lengths { epsilon: surface_epsilon(bounds), reach: shadow_reach(bounds) }
+    }
+}
 
 /// Width and height of an image in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]

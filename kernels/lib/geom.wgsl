@@ -24,6 +24,7 @@ struct TriangleHit {
     t: f32,
     u: f32, // weight of the second corner
     v: f32, // weight of the third corner
+    w: f32, // weight of the first corner
 }
 
 const NO_HIT: f32 = 3.3e38; // farther than T_MAX, so that it never wins a comparison

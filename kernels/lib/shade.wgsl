@@ -22,17 +22,16 @@ fn surface_at(ray: Ray, record: u32, epsilon: f32) -> Surface {
     let b = read_vertex(r.y);
     let c = read_vertex(r.z);
     let hit = surface_hit(ray, a.position.xyz, b.position.xyz, c.position.xyz);
-    let w = 1.0 - hit.u - hit.v;
     var geometric = unit(cross3(b.position.xyz - a.position.xyz, c.position.xyz - a.position.xyz));
     geometric = geometric * select(1.0, -1.0, dot3(geometric, ray.direction) > 0.0);
-    var normal = a.normal.xyz * w + b.normal.xyz * hit.u + c.normal.xyz * hit.v;
+    var normal = a.normal.xyz * hit.w + b.normal.xyz * hit.u + c.normal.xyz * hit.v;
     if (dot3(normal, normal) < 1.0e-12) {
         normal = geometric; // opposite normals cancelled, or the file's were zero
     } else {
         normal = unit(normal);
         normal = normal * select(1.0, -1.0, dot3(normal, geometric) < 0.0);
     }
-    let on_triangle = a.position.xyz * w + b.position.xyz * hit.u + c.position.xyz * hit.v;
+    let on_triangle = a.position.xyz * hit.w + b.position.xyz * hit.u + c.position.xyz * hit.v;
     return Surface(hit.t, r.w, triangle_materials[r.w], on_triangle + geometric * epsilon, geometric, normal);
 }
 

@@ -137,8 +137,8 @@ impl Builder {
 
     /// Bins for the centroids of a node.
     fn binning(&self, items: &[Item]) -> Binning {
-        // Most nodes are small. Half the bins do there (bunny: 0.1 % on the cost), since more would stay empty; not fewer
-        // than four, though.
+        // Most nodes are small. Half the bins do there (bunny: 0.1 % on the cost), since more would stay empty. At least
+        // four bins are used.
         let Config { bins, .. } = self.config;
         let bins = if items.len() <= 2 * bins { bins.div_ceil(2).max(bins.min(4)) } else { bins };
         Binning::new(&centroid_bounds(items), bins)

@@ -324,7 +324,7 @@ pub fn build(scene: &Scene, config: &Config) -> Result<KdBuilt> {
         if builder.max_depth == 0 {
             return Err(Error::argument(
                 format!("kdtree over {}", scene.name),
-                format!("takes more than {MAX_LEAVES_AND_RECORDS} leaves and records"),
+                format!("takes more than {} leaves and records", builder.limit),
                 "use a smaller scene",
             ));
         }

@@ -125,7 +125,7 @@ const KD_OPTIONS: &[OptionInfo] = &[
     OptionInfo {
         key: "spread",
         default: "content",
-        meaning: "bins divide a node's cell, or what its triangles take up of that (content: whose borders may be planes, too)",
+        meaning: "what the bins divide: the node's cell, or the part of it that triangles occupy, whose borders are candidates as well",
         kind: Kind::Word(&["content", "cell"]),
     },
     OptionInfo {
@@ -139,7 +139,7 @@ const KD_OPTIONS: &[OptionInfo] = &[
     OptionInfo {
         key: "small_leaf",
         default: "2",
-        meaning: "nodes of at most so many triangles are leaves",
+        meaning: "largest number of triangles at which a node is always a leaf",
         kind: Kind::Count(0, 1 << 20),
     },
     OptionInfo {

@@ -1,9 +1,10 @@
-//! Building a structure so that Ctrl-C need not wait for it. Nothing interrupts a builder, least of all one of another crate:
-//! it has a thread of its own, and after Ctrl-C nobody waits for that any more.
+//! Building a structure so that Ctrl-C need not wait for it. A builder cannot be interrupted, so it runs on its own thread,
+//! and after Ctrl-C that thread is abandoned.
 
 use crate::accel::{Built, Selection};
 use crate::backend::Interrupted;
 use crate::error::{Error, Result};
+use crate::results::statistics;
 use crate::scene::Scene;
 use std::sync::Arc;
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -11,6 +12,29 @@ use std::time::Duration;
 
 /// How often the waiting thread looks for Ctrl-C.
 const POLL: Duration = Duration::from_millis(20);
+
+/// Builds the structure `times` times, at least once, and returns the last one with the median build time. Never are two of
+/// them in memory.
+///
+/// # Errors
+/// Those of [`build`].
+pub fn build_repeatedly(
+    selection: &Selection,
+    scene: &Arc<Scene>,
+    threads: usize,
+    times: usize,
+    interrupted: Interrupted,
+) -> Result<Built> {
+    let mut built = build(selection, scene, threads, interrupted)?;
+    let mut build_ms = vec![built.build_ms];
+    for _ in 1..times {
+        drop(built);
+        built = build(selection, scene, threads, interrupted)?;
+        build_ms.push(built.build_ms);
+    }
+    built.build_ms = statistics::median(&build_ms).unwrap_or(built.build_ms);
+    Ok(built)
+}
 
 /// Builds the structure on `threads` threads (0: as many as there are). After [`Error::Interrupted`] the builder still runs:
 /// the process is to end.
@@ -24,7 +48,7 @@ pub fn build(selection: &Selection, scene: &Arc<Scene>, threads: usize, interrup
     let (done, result) = channel();
     let (own, shared) = (selection.clone(), Arc::clone(scene));
     let builder = std::thread::spawn(move || {
-        // Nobody may be waiting any more.
+        // The receiver may be gone.
         let _ = done.send(own.build(&shared, threads));
     });
     loop {

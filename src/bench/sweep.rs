@@ -16,7 +16,6 @@ use crate::results::journal::{self, Journal, JournalWriter};
 use crate::results::record::{
     ConfigurationRecord, End, Failure, Memory, Provenance, Record, Resumed, SCHEMA, Status, StructureRecord,
 };
-use crate::results::statistics;
 use crate::results::summary::Run;
 use crate::scene::Scene;
 use std::collections::{HashMap, VecDeque};
@@ -251,17 +250,8 @@ impl Sweep<'_, '_> {
     /// Build a structure as often as the plan says; the time is the median.
     fn build(&mut self, selection: &Selection, scene: &Arc<Scene>) -> Result<Built> {
         self.say(Event::Building(format!("building {} of {}", selection.name(), scene.name)));
-        let build = || building::build(selection, scene, self.threads, self.context.interrupted);
-        let mut built = build()?;
-        let mut times = vec![built.build_ms];
-        for _ in 1..self.context.plan.builds {
-            self.context.check_interrupt()?;
-            // Never two of them at a time in memory
-            drop(built);
-            built = build()?;
-            times.push(built.build_ms);
-        }
-        built.build_ms = statistics::median(&times).unwrap_or(built.build_ms);
+        let builds = self.context.plan.builds;
+        let built = building::build_repeatedly(selection, scene, self.threads, builds, self.context.interrupted)?;
         if !built.note.is_empty() {
             self.say(Event::Note(format!("{} {}: {}", scene.name, selection.name(), built.note)));
         }

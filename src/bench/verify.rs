@@ -9,7 +9,7 @@
 //! contract multiplications and additions and approximate divisions: a ray that passes within rounding of an edge can
 //! find the neighbouring triangle. Such rays lie along edges, so that their share is about the width of rounding over the
 //! width of a triangle in the image; [`HIT_SHARE`] is far above that and far below any wrong kernel. No ray may lose its
-//! hit, except at a silhouette: the watertight test is exact about that on every device. What really differs is recorded
+//! hit, except at a silhouette: the watertight test loses none on any device. What really differs is recorded
 //! with every row.
 
 use crate::accel::brute;
@@ -60,8 +60,8 @@ pub struct Verdict {
     pub brute_checked: u64,
     /// Primary rays whose triangle or distance differs.
     pub hits_differing: u64,
-    /// Of these, how many hit a triangle in the reference, away from silhouettes, and none here: none may, on any device,
-    /// by the watertight test.
+    /// Of these, how many hit a triangle in the reference, away from silhouettes, and none here. With the watertight test, no
+    /// ray may, on any device.
     pub hits_lost: u64,
     /// Pixels whose steps, tests, pops or restarts differ from the CPU twin's (0 where they were not compared).
     pub counters_differing: u64,

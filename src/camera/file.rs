@@ -5,7 +5,6 @@ use super::path::{CameraPath, Kind, PathLight};
 use super::recorded::{Recorded, Recording};
 use super::walk::{Aim, Key, Walk};
 use crate::error::{Error, Result};
-use crate::scene::Pose;
 use crate::scene::placement::MAX_COORDINATE;
 use glam::{DVec3, Vec3};
 use serde::Deserialize;
@@ -248,22 +247,21 @@ fn recorded(source: &Source, file: &File) -> Result<Recorded> {
         return Err(source.fault(file.kind.span(), problem, mend));
     };
     let pose = |row: &Spanned<[f64; 10]>| {
-        let point = DVec3::from_slice(&row.get_ref()[1..4]);
+        let position = DVec3::from_slice(&row.get_ref()[1..4]);
         let vector = |at: usize| DVec3::from_slice(&row.get_ref()[at..at + 3]).as_vec3();
         let fault = |problem: &str| source.fault(row.span(), problem, "repair the row");
         // What is a unit vector stays as it is, to the bit
         let unit = |v: Vec3| if v.is_normalized() { v } else { v.normalize_or_zero() };
         let (time, direction, up) = (row.get_ref()[0], unit(vector(4)), unit(vector(7)));
-        let pose = Pose { time, position: point.as_vec3(), direction, up };
-        let sound = pose.time.is_finite() && point.is_finite();
-        if !sound || point.abs().max_element() > MAX_COORDINATE {
+        let sound = time.is_finite() && position.is_finite();
+        if !sound || position.abs().max_element() > MAX_COORDINATE {
             return Err(fault("time or position is not finite or too large"));
         }
         // Zero and what is not finite fail here as well
-        if !(pose.direction.cross(pose.up).length() >= 1e-3) {
+        if !(direction.cross(up).length() >= 1e-3) {
             return Err(fault("direction or up is zero, or the camera looks along its up vector"));
         }
-        Ok(Recording::InFile(point, pose))
+        Ok(Recording::InFile { position, time, direction, up })
     };
     Ok(Recorded { poses: rows.iter().map(pose).collect::<Result<_>>()? })
 }

@@ -261,7 +261,7 @@ impl CameraPath {
         frame as f32 / self.frames as f32
     }
 
-    /// What a frame shows. The camera stands where an exported path would put it.
+    /// What a frame shows. The camera's position is rounded as an exported path would round it.
     fn view(&self, scene: &Scene, room: Room, frame: usize, camera: Camera) -> Result<View> {
         let camera = Camera { position: scene.placement.snap(camera.position), ..camera };
         self.check_camera(frame, &camera)?;

@@ -4,7 +4,7 @@ use super::path::Room;
 use super::{Camera, CameraPath, View};
 use crate::error::Result;
 use crate::scene::{Light, Placement, Pose, Scene, SceneCamera};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use std::fmt::Write;
 
 /// A camera per frame.
@@ -18,14 +18,14 @@ pub(super) struct Recorded {
 pub(super) enum Recording {
     /// In a scene as it lies in memory.
     Placed(Pose),
-    /// At a point of the file's coordinates, which stands for the pose's.
-    InFile(DVec3, Pose),
+    /// At a point of the file's coordinates.
+    InFile { position: DVec3, time: f64, direction: Vec3, up: Vec3 },
 }
 
 impl Recording {
     pub fn time(&self) -> f64 {
         match self {
-            Recording::Placed(pose) | Recording::InFile(_, pose) => pose.time,
+            Recording::Placed(Pose { time, .. }) | Recording::InFile { time, .. } => *time,
         }
     }
 }
@@ -33,11 +33,14 @@ impl Recording {
 impl Recorded {
     /// The camera at a frame.
     pub fn camera(&self, room: Room, frame: usize, field_of_view: f32) -> Camera {
-        let Pose { position, direction, up, .. } = match self.poses[frame] {
-            Recording::Placed(pose) => pose,
-            Recording::InFile(point, pose) => Pose { position: room.place(point, false), ..pose },
-        };
-        Camera { position, direction, up, field_of_view }
+        match self.poses[frame] {
+            Recording::Placed(Pose { position, direction, up, .. }) => {
+                Camera { position, direction, up, field_of_view }
+            }
+            Recording::InFile { position, direction, up, .. } => {
+                Camera { position: room.place(position, false), direction, up, field_of_view }
+            }
+        }
     }
 }
 

@@ -10,7 +10,6 @@ use crate::bench::plan::{self, parse_list};
 use crate::bench::{building, sweep};
 use crate::error::{Error, Result};
 use crate::results::record::{SceneRecord, StructureRecord};
-use crate::results::statistics;
 use crate::results::summary::{self, StructureRow};
 use crate::results::{files, table};
 use crate::scene::Scene;
@@ -62,7 +61,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     if !(1..=1000).contains(&arguments.runs) {
         return Err(Error::argument("--runs", format!("{} runs", arguments.runs), "give 1 to 1000"));
     }
-    let stop = interrupt::flag(|| {})?;
+    let stop = interrupt::flag(|| output::note("stopping; Ctrl-C again ends the program at once"))?;
     let mut job = Job { arguments, interrupted: &|| stop.load(Ordering::Relaxed), rows: Vec::new(), broken: 0 };
     let ended = arguments.scene.iter().try_for_each(|what| job.scene(what, &selections));
     if matches!(ended, Ok(()) | Err(Error::Interrupted)) && !(ended.is_err() && job.rows.is_empty()) {
@@ -86,6 +85,9 @@ struct Job<'a> {
 impl Job<'_> {
     fn scene(&mut self, what: &str, selections: &[Selection]) -> Result<()> {
         let scene = Arc::new(self.arguments.library.load(what)?);
+        if (self.interrupted)() {
+            return Err(Error::Interrupted);
+        }
         let record = plan::scene_record(&scene);
         selections.iter().try_for_each(|selection| self.structure(&scene, &record, selection))
     }
@@ -93,13 +95,8 @@ impl Job<'_> {
     fn structure(&mut self, scene: &Arc<Scene>, record: &SceneRecord, selection: &Selection) -> Result<()> {
         let name = format!("{} {}", scene.name, selection.name());
         let running = Building::begin(&format!("{} of {}", selection.name(), scene.name));
-        let build = || building::build(selection, scene, self.arguments.threads, self.interrupted);
-        let mut built = build()?;
-        let mut times = vec![built.build_ms];
-        for _ in 1..self.arguments.runs {
-            built = build()?;
-            times.push(built.build_ms);
-        }
+        let Arguments { runs, threads, .. } = self.arguments;
+        let built = building::build_repeatedly(selection, scene, *threads, *runs, self.interrupted)?;
         drop(running);
         if !built.note.is_empty() {
             output::note(&format!("{name}: {}", built.note));
@@ -118,7 +115,7 @@ impl Job<'_> {
             structure: selection.name().to_string(),
             variant: selection.variant(),
             properties: built.structure.properties(scene),
-            build_ms: statistics::median(&times).unwrap_or(built.build_ms),
+            build_ms: built.build_ms,
             build_threads: built.build_threads,
             memory: sweep::memory(&built, scene, None),
             note: built.note,

@@ -102,8 +102,9 @@ Examples:
       without any GPU or driver
 
 In the folder of results: journal.jsonl (everything, one record per line), summary.csv, structures.csv, run.json.
-Ctrl-C ends a sweep in order, also while a structure is built: what was measured is kept, and `rtbench sweep --resume FOLDER` measures the rest. It goes
-on only with the same build of the program on the same device, with scenes and camera paths that have not changed.";
+Ctrl-C ends a sweep in order, also while a structure is built: what was measured is kept, and `rtbench sweep --resume
+FOLDER` measures the rest. It goes on only with the same build of the program on the same device, with scenes and camera
+paths that have not changed.";
 
 /// Runs the command.
 ///

@@ -1,7 +1,7 @@
 //! The twins as a device: [`Backend`] and [`Prepared`] over a pool of threads.
 
 use super::count::{Count, CountOff};
-use super::render::{Frame, Lengths};
+use super::render::Frame;
 use super::trace::trace_group;
 use super::traverse::bvh_stack::STACK_SIZE;
 use super::traverse::{GROUP, Traverse, Triangles, brute, bvh, bvh_stack, grid, grid_coop, grid_packet, kdtree};

@@ -6,9 +6,9 @@ use super::shade::{Surface, phong, reflected_ray, rgba8, surface_at, unit};
 use super::traverse::{GROUP, Lanes, Traverse, Triangles, bits};
 use crate::accel::Method;
 use crate::accel::method::{Group, Pattern, ShadowRays};
-use crate::backend::{Config, CountedPixel, GivenRay, Pixel, Size, shadow_reach, surface_epsilon};
+use crate::backend::{Config, CountedPixel, GivenRay, Lengths, Pixel, Size};
 use crate::camera::{PixelGrid, View};
-use crate::math::{Aabb, MISS, Ray, T_MAX};
+use crate::math::{MISS, Ray, T_MAX};
 use crate::scene::{Light, Scene};
 use glam::Vec3A;
 
@@ -34,22 +34,6 @@ pub struct Frame<'a> {
     grid: PixelGrid,
     lights: &'a [Light],
     lengths: Lengths,
-}
-
-/// Lengths that secondary rays depend on, in scene units.
-#[derive(Clone, Copy, Debug)]
-pub struct Lengths {
-    /// How far off a surface they start, see [`surface_epsilon`].
-    pub epsilon: f32,
-    /// How far from a point shadow rays from a light start at most, see [`shadow_reach`].
-    pub reach: f32,
-}
-
-impl Lengths {
-    /// Those of a scene with these bounds.
-    pub fn new(bounds: Aabb) -> Lengths {
-        Lengths { epsilon: surface_epsilon(bounds), reach: shadow_reach(bounds) }
-    }
 }
 
 /// The primary ray of a pixel (rows from the top), exactly as a frame casts it.

@@ -38,17 +38,16 @@ pub fn surface_at(triangles: Triangles, scene: &Scene, ray: &Ray, record: u32, e
     let [a, b, c] = record.vertices.map(|v| triangles.vertices[v as usize]);
     let (pa, pb, pc) = (a.position_a(), b.position_a(), c.position_a());
     let hit = triangles.surface(ray, record);
-    let w = 1.0 - hit.u - hit.v;
     let geometric = unit((pb - pa).cross(pc - pa));
     let geometric = geometric * sign(geometric.dot(ray.direction) > 0.0);
-    let normal = a.normal_a() * w + b.normal_a() * hit.u + c.normal_a() * hit.v;
+    let normal = a.normal_a() * hit.w + b.normal_a() * hit.u + c.normal_a() * hit.v;
     let normal = if normal.dot(normal) < 1.0e-12 {
         geometric // opposite normals cancelled, or the file's were zero
     } else {
         let normal = unit(normal);
         normal * sign(normal.dot(geometric) < 0.0)
     };
-    let on_triangle = pa * w + pb * hit.u + pc * hit.v;
+    let on_triangle = pa * hit.w + pb * hit.u + pc * hit.v;
     Surface {
         t: hit.t,
         triangle: record.triangle,

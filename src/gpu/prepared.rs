@@ -26,8 +26,7 @@ pub(super) struct GpuPrepared<'a> {
     uploaded: Uploaded,
     pub(super) method: Method,
     stack_size: u32,
-    epsilon: f32,
-    shadow_reach: f32,
+    lengths: Lengths,
     /// Bands per frame that keep a dispatch below the watchdog, by configuration and size.
     pub(super) bands: HashMap<(Config, Size), u32>,
     /// Of the path that was timed last.
@@ -66,8 +65,7 @@ impl<'a> GpuPrepared<'a> {
             uploaded: backend.upload(scene, structure, method)?,
             method,
             stack_size: stack_size(depth),
-            epsilon: surface_epsilon(scene.bounds()),
-            shadow_reach: shadow_reach(scene.bounds()),
+            lengths: Lengths::new(scene.bounds()),
             bands: HashMap::new(),
             written: None,
         })
@@ -97,7 +95,7 @@ impl<'a> GpuPrepared<'a> {
                     right: grid.right,
                     rows: tile.rows,
                     down: grid.down,
-                    epsilon: self.epsilon,
+                    epsilon: self.lengths.epsilon,
                     background: self.scene.background,
                     light_count: view.lights.len() as u32,
                     first_light: lights.len() as u32,
@@ -105,7 +103,7 @@ impl<'a> GpuPrepared<'a> {
                     first_column: tile.column,
                     columns: tile.columns,
                     height: size.height,
-                    shadow_reach: self.shadow_reach,
+                    shadow_reach: self.lengths.reach,
                     pad: [0; 2],
                 };
                 uniforms.extend_from_slice(bytemuck::bytes_of(&uniform));

@@ -20,7 +20,7 @@ pub enum TriangleTest {
     MollerTrumbore,
 }
 
-/// A triangle that was hit: distance and barycentric coordinates (of the second and the third corner).
+/// A triangle that was hit: distance and barycentric coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleHit {
     /// Distance, `0 < t <= t_max`.
@@ -29,6 +29,8 @@ pub struct TriangleHit {
     pub u: f32,
     /// Weight of the third corner.
     pub v: f32,
+    /// Weight of the first corner.
+    pub w: f32,
 }
 
 impl TriangleTest {

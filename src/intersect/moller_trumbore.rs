@@ -38,7 +38,8 @@ impl Solution {
         let (near, far) = ray_box(ray, v0.min(v1).min(v2), v0.max(v1).max(v2));
         // Only the clamped distance is compared: whether a hit counts must not depend on the order of the tests.
         let t = (self.t / det).max(near).min(far);
-        (TriangleHit { t, u: self.u / det, v: self.v / det }, near <= far)
+        let (u, v) = (self.u / det, self.v / det);
+        (TriangleHit { t, u, v, w: 1.0 - u - v }, near <= far)
     }
 }
 

@@ -11,7 +11,8 @@
 //! products. Rounding is monotone, so a sign is never wrong; it may only be zero where the exact one is not. Two
 //! triangles that share an edge compare the same two numbers. So the accepted area of a triangle covers the triangle of
 //! its rounded corners, these cover the mesh without gaps, and a ray through an edge or a vertex hits at least one of its
-//! triangles. A triangle seen edge-on, whose signs are all zero, is missed.
+//! triangles. A triangle seen edge-on, whose signs are all zero, is missed. A nearly edge-on triangle may be hit beside
+//! its area where two signs round to zero; the interval of its own box bounds that.
 //!
 //! No compiler can spoil this by contracting operations: comparisons are not contracted, and of the two products in `q`
 //! the factor `scale` is a power of two, so that fusing changes nothing.
@@ -59,9 +60,9 @@ impl Projected {
     fn hit(&self) -> TriangleHit {
         let ([e0, e1, e2], [t0, t1, t2]) = (self.edges, self.along);
         let sum = e0 + e1 + e2;
-        let area = if sum == 0.0 { 1.0 } else { sum };
-        let t = ((e0 * t0 + e1 * t1 + e2 * t2) / area).max(self.near).min(self.far);
-        TriangleHit { t, u: e1 / area, v: e2 / area }
+        let scale = 1.0 / if sum == 0.0 { 1.0 } else { sum };
+        let t = ((e0 * t0 + e1 * t1 + e2 * t2) * scale).max(self.near).min(self.far);
+        TriangleHit { t, u: e1 * scale, v: e2 * scale, w: e0 * scale }
     }
 }
 

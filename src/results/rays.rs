@@ -12,12 +12,16 @@ use std::path::Path;
 /// The columns that a file of rays must have, in any order; others are ignored.
 pub const COLUMNS: [&str; 6] = ["origin_x", "origin_y", "origin_z", "direction_x", "direction_y", "direction_z"];
 
-/// A ray as it stands in a file, in the coordinates of the scene's file.
+/// Directions whose largest component is below this are refused: the distance of a hit 1e18 away is still a double in
+/// units of it.
+pub const SHORTEST: f64 = 1e-280;
+
+/// A ray as written in a file, in the coordinates of the scene's file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExactRay {
     /// Start, up to 1e18.
     pub origin: DVec3,
-    /// Direction, any length but zero.
+    /// Direction; its largest component is between [`SHORTEST`] and the largest float.
     pub direction: DVec3,
 }
 
@@ -25,9 +29,7 @@ impl ExactRay {
     /// The ray in memory.
     pub fn place(&self, placement: &Placement) -> PlacedRay {
         let scaled = -exponent_of(self.direction.abs().max_element());
-        // In two steps: a direction may be shorter than the inverse of any double
-        let factors = [scaled / 2, scaled - scaled / 2].map(power_of_two);
-        let direction = (self.direction * factors[0] * factors[1]).as_vec3();
+        let direction = (self.direction * power_of_two(scaled)).as_vec3();
         let ray = GivenRay { origin: placement.place(self.origin), direction };
         PlacedRay { ray, exponent: scaled - placement.exponent }
     }
@@ -82,7 +84,7 @@ pub fn read_exact(path: &Path) -> Result<Vec<ExactRay>> {
             // Three origins, three directions
             let (most, kind) = if i < 3 { (MAX_COORDINATE, "1e18") } else { (f64::from(f32::MAX), "single precision") };
             let fault = |what: String| {
-                Error::file(path, line, format!("{name} is {text:?}, {what}"), "mend or delete the line")
+                Error::file(path, line, format!("{name} is {text:?}, {what}"), "correct or delete the line")
             };
             let parsed: Option<f64> = text.parse().ok().filter(|v: &f64| v.is_finite());
             *value = parsed.ok_or_else(|| fault("not a finite number".into()))?;
@@ -92,8 +94,13 @@ pub fn read_exact(path: &Path) -> Result<Vec<ExactRay>> {
         }
         let [ox, oy, oz, dx, dy, dz] = values;
         let [origin, direction] = [DVec3::new(ox, oy, oz), DVec3::new(dx, dy, dz)];
-        if direction == DVec3::ZERO {
-            return Err(Error::file(path, line, "the direction has no length", "mend or delete the line"));
+        let length = direction.abs().max_element();
+        if length < SHORTEST {
+            let problem = match length == 0.0 {
+                true => "the direction has no length".to_owned(),
+                false => format!("the direction is shorter than {SHORTEST:e}, so that distances are not finite"),
+            };
+            return Err(Error::file(path, line, problem, "correct or delete the line"));
         }
         rays.push(ExactRay { origin, direction });
     }

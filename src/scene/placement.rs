@@ -182,7 +182,7 @@ pub(super) fn distance(bounds: Aabb) -> f64 {
 }
 
 /// Where the parts of a scene, which were read with placements of their own, should have the origin instead; `None`
-/// if they are well where they are.
+/// if no move is needed.
 pub(super) fn better_offset<'a>(parts: impl Iterator<Item = &'a Scene> + Clone) -> Option<DVec3> {
     let first = parts.clone().next()?.placement;
     let agree = parts.clone().all(|part| part.placement == first);
@@ -249,7 +249,7 @@ impl Scene {
         }
     }
 
-    /// What is wrong with the size of a scene, if something is: problem and mend. `bounds` is the box around its
+    /// What is wrong with the size of a scene, if something is: the problem and the advice. `bounds` is the box around its
     /// triangles.
     pub(super) fn size_fault(&self, bounds: Aabb) -> Option<(String, &'static str)> {
         let [min, max] = [bounds.min, bounds.max].map(|corner| self.placement.file(corner));

@@ -233,10 +233,10 @@ fn mutant(ray: &Ray, corners: [Vec3A; 3], mutation: Mutation) -> Option<Triangle
     let far = (p[0].max(p[1]).max(p[2]) + ray.slack).min_element();
     let e = sides.map(|s| s.2[k]);
     let sum = e[0] + e[1] + e[2];
-    let area = if sum == 0.0 { 1.0 } else { sum };
-    let t = ((e[0] * p[0][k] + e[1] * p[1][k] + e[2] * p[2][k]) / area).max(near).min(far);
+    let scale = 1.0 / if sum == 0.0 { 1.0 } else { sum };
+    let t = ((e[0] * p[0][k] + e[1] * p[1][k] + e[2] * p[2][k]) * scale).max(near).min(far);
     let (u, v) = if mutation == Mutation::WeightsSwapped { (e[2], e[1]) } else { (e[1], e[2]) };
-    (near <= far && t > 0.0).then_some(TriangleHit { t, u: u / area, v: v / area })
+    (near <= far && t > 0.0).then_some(TriangleHit { t, u: u * scale, v: v * scale, w: e[0] * scale })
 }
 
 #[test]

@@ -25,12 +25,14 @@ fn hit_of(ray: Ray, s: Solution, lo: vec3<f32>, hi: vec3<f32>, must_pass: bool) 
     let det = max(s.det, DETERMINANT_MIN);
     let interval = ray_box(ray, lo, hi);
     let t = min(max(s.t / det, interval.x), interval.y);
-    return TriangleHit(select(t, NO_HIT, must_pass && !(interval.x <= interval.y && t > 0.0)), s.u / det, s.v / det);
+    let u = s.u / det;
+    let v = s.v / det;
+    return TriangleHit(select(t, NO_HIT, must_pass && !(interval.x <= interval.y && t > 0.0)), u, v, 1.0 - u - v);
 }
 
 fn intersect(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> TriangleHit {
     let s = solve(ray, v0, v1, v2);
-    var hit = TriangleHit(NO_HIT, 0.0, 0.0);
+    var hit = TriangleHit(NO_HIT, 0.0, 0.0, 0.0);
     if (s.det >= DETERMINANT_MIN && s.u >= 0.0 && s.u <= s.det && s.v >= 0.0 && s.u + s.v <= s.det) {
         hit = hit_of(ray, s, min(min(v0, v1), v2), max(max(v0, v1), v2), true);
     }

@@ -42,17 +42,19 @@ fn own_interval(ray: Ray, seen: Projected) -> vec2<f32> {
     return vec2<f32>(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
 }
 
+// Each weight is made of its own edge. With 1 - u - v for the first one, Mesa 25.0 summed the edges in another order in kernels
+// that need no distance, and one pixel of 74,000 had another colour.
 fn hit_within(seen: Projected, interval: vec2<f32>) -> TriangleHit {
     let e = seen.edges;
     let sum = e.x + e.y + e.z;
-    let area = select(sum, 1.0, sum == 0.0);
-    let t = (e.x * seen.along.x + e.y * seen.along.y + e.z * seen.along.z) / area;
-    return TriangleHit(min(max(t, interval.x), interval.y), e.y / area, e.z / area);
+    let scale = 1.0 / select(sum, 1.0, sum == 0.0);
+    let t = (e.x * seen.along.x + e.y * seen.along.y + e.z * seen.along.z) * scale;
+    return TriangleHit(min(max(t, interval.x), interval.y), e.y * scale, e.z * scale, e.x * scale);
 }
 
 fn intersect(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> TriangleHit {
     let seen = project(ray, v0, v1, v2);
-    var hit = TriangleHit(NO_HIT, 0.0, 0.0);
+    var hit = TriangleHit(NO_HIT, 0.0, 0.0, 0.0);
     if (seen.inside) {
         let interval = own_interval(ray, seen);
         let found = hit_within(seen, interval);

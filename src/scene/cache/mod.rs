@@ -236,7 +236,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     }
     let placement = Placement { offset: DVec3::from(header.offset), exponent: header.exponent };
     if !placement.is_sound() {
-        return Err(fault("the cache is corrupt: its placement is none", again));
+        return Err(fault("the cache is corrupt: its placement is not valid", again));
     }
     let mut scene = Scene {
         name: texts.name,

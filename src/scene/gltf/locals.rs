@@ -1,5 +1,5 @@
 //! Transforms of nodes in double precision. The crate (1.4.1) has them in single precision, which is too coarse for a
-//! node that stands far from the origin.
+//! node that is far from the origin.
 
 use glam::{DMat4, DQuat, DVec3, Mat4};
 use gltf::Node;

@@ -186,7 +186,7 @@ fn too_far(line: Option<usize>, row: u64, position: Vec3) -> Fault {
     Fault::new(line, format!("vertex {row} lies at ({x}, {y}, {z}), which is {what}"), mend)
 }
 
-/// A vertex whose position is counted from a point, and rounded then. The normal is a float all the same.
+/// A vertex whose position is counted from a point, and rounded then. The normal is still read in single precision.
 fn read_far_vertex<S: Source>(roles: &[Role], source: &mut S, offset: DVec3) -> Result<[f32; 6], Bad> {
     let mut values = [0.0; 6];
     source.begin()?;
