@@ -9,7 +9,7 @@ use std::process::Command;
 const PROGRAM: &str = env!("CARGO_BIN_EXE_rtbench");
 
 /// The run that the README shows.
-const SHOWN: &str = "results/lavapipe-2core-2026-11-28";
+const SHOWN: &str = "results/lavapipe-2core-2026-11-29";
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
