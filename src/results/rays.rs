@@ -12,16 +12,12 @@ use std::path::Path;
 /// The columns that a file of rays must have, in any order; others are ignored.
 pub const COLUMNS: [&str; 6] = ["origin_x", "origin_y", "origin_z", "direction_x", "direction_y", "direction_z"];
 
-/// Directions whose largest component is below this are refused: the distance of a hit 1e18 away is still a double in
-/// units of it.
-pub const SHORTEST: f64 = 1e-280;
-
 /// A ray as written in a file, in the coordinates of the scene's file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExactRay {
     /// Start, up to 1e18.
     pub origin: DVec3,
-    /// Direction; its largest component is between [`SHORTEST`] and the largest float.
+    /// Direction, of any length but zero.
     pub direction: DVec3,
 }
 
@@ -29,7 +25,9 @@ impl ExactRay {
     /// The ray in memory.
     pub fn place(&self, placement: &Placement) -> PlacedRay {
         let scaled = -exponent_of(self.direction.abs().max_element());
-        let direction = (self.direction * power_of_two(scaled)).as_vec3();
+        // In two steps: a direction may be shorter than the inverse of any double
+        let factors = [scaled / 2, scaled - scaled / 2].map(power_of_two);
+        let direction = (self.direction * factors[0] * factors[1]).as_vec3();
         let ray = GivenRay { origin: placement.place(self.origin), direction };
         PlacedRay { ray, exponent: scaled - placement.exponent }
     }
@@ -94,13 +92,8 @@ pub fn read_exact(path: &Path) -> Result<Vec<ExactRay>> {
         }
         let [ox, oy, oz, dx, dy, dz] = values;
         let [origin, direction] = [DVec3::new(ox, oy, oz), DVec3::new(dx, dy, dz)];
-        let length = direction.abs().max_element();
-        if length < SHORTEST {
-            let problem = match length == 0.0 {
-                true => "the direction has no length".to_owned(),
-                false => format!("the direction is shorter than {SHORTEST:e}, so that distances are not finite"),
-            };
-            return Err(Error::file(path, line, problem, "correct or delete the line"));
+        if direction == DVec3::ZERO {
+            return Err(Error::file(path, line, "the direction has no length", "correct or delete the line"));
         }
         rays.push(ExactRay { origin, direction });
     }
@@ -113,9 +106,14 @@ pub fn read_exact(path: &Path) -> Result<Vec<ExactRay>> {
 /// Writes `t,triangle` per placed ray; `t` is empty and the triangle -1 for a miss.
 ///
 /// # Errors
-/// [`Error::Output`].
+/// [`Error::Output`], and [`Error::Input`] where a distance is not finite in units of a ray's direction.
 pub fn write(path: &Path, rays: &[PlacedRay], hits: &[Hit]) -> Result<()> {
     let exponents = rays.iter().map(|ray| ray.exponent);
+    let is_endless = |(hit, exponent): (&Hit, i32)| hit.triangle != MISS && !scaled(hit.t, exponent).is_finite();
+    if let Some(index) = hits.iter().zip(exponents.clone()).position(is_endless) {
+        let problem = "the distance of its hit is beyond double precision in units of its direction";
+        return Err(Error::argument(format!("ray {}", index + 1), problem, "give it a longer direction"));
+    }
     files::replace(path, csv(hits.iter().zip(exponents)).as_bytes())
 }
 
@@ -137,10 +135,14 @@ fn csv<'a>(hits: impl Iterator<Item = (&'a Hit, i32)>) -> String {
     text
 }
 
+fn scaled(t: f32, exponent: i32) -> f64 {
+    let [half, rest] = [exponent / 2, exponent - exponent / 2].map(power_of_two);
+    f64::from(t) * half * rest
+}
+
 /// A distance times a power of two, as a float if it is one, otherwise as a double.
 fn distance(t: f32, exponent: i32) -> String {
-    let [half, rest] = [exponent / 2, exponent - exponent / 2].map(power_of_two);
-    let exact = f64::from(t) * half * rest;
+    let exact = scaled(t, exponent);
     let single = exact as f32;
     if f64::from(single) == exact { single.to_string() } else { format!("{exact:e}") }
 }
