@@ -11,7 +11,7 @@
 //! products. Rounding is monotone, so a sign is never wrong; it may only be zero where the exact one is not. Two
 //! triangles that share an edge compare the same two numbers. So the accepted area of a triangle covers the triangle of
 //! its rounded corners, these cover the mesh without gaps, and a ray through an edge or a vertex hits at least one of its
-//! triangles. A triangle seen edge-on, whose signs are all zero, is missed. A nearly edge-on triangle may be hit beside
+//! triangles. A triangle seen edge-on, whose signs are all zero, is missed. A nearly edge-on triangle may be hit outside
 //! its area where two signs round to zero; the interval of its own box bounds that.
 //!
 //! No compiler can spoil this by contracting operations: comparisons are not contracted, and of the two products in `q`
