@@ -50,7 +50,7 @@ pub fn capture() -> Environment {
     }
 }
 
-/// Describes the program, from what `build.rs` found.
+/// Describes the program, from what `build/main.rs` found.
 pub fn program() -> Program {
     let lock = include_str!("../../Cargo.lock");
     Program {

@@ -1,6 +1,7 @@
 //! Assembles a kernel: an entry file, a traversal, a set of constants. WGSL has no include and an `override` may not
 //! size an array, so that both are done here, in text; a line map turns naga's lines back into files and lines.
 
+use super::tokens::tokens;
 use crate::accel::method::{Pattern, ShadowRays, Vote};
 use crate::accel::{Method, Traversal};
 use crate::backend::Config;
@@ -101,14 +102,12 @@ impl Source {
         }
     }
 
-    /// BLAKE3 of the text without the number of the driver's threads: the identity of a measured kernel, the same on every
-    /// machine.
+    /// First 16 digits of BLAKE3 of the text's tokens, without the number of the driver's threads: the identity of a measured
+    /// kernel, the same on every machine. Comments and white space do not change it.
     pub fn hash(&self) -> String {
-        let mut hasher = blake3::Hasher::new();
-        for line in self.text.split_inclusive('\n').filter(|line| !line.starts_with(THREADS)) {
-            hasher.update(line.as_bytes());
-        }
-        hasher.finalize().to_hex()[..16].to_string()
+        let lines = self.text.split_inclusive('\n').filter(|line| !line.starts_with(THREADS));
+        let tokens = tokens(&lines.collect::<String>());
+        blake3::hash(tokens.as_bytes()).to_hex()[..16].to_string()
     }
 }
 

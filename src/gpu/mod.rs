@@ -6,6 +6,7 @@ pub mod kernels;
 mod prepared;
 mod shared;
 mod timing;
+mod tokens;
 mod upload;
 mod words;
 

@@ -6,6 +6,7 @@ mod camera; // camera paths: files, thinning, fitting, errors
 mod cli; // the program as a user runs it: outputs, exit codes, broken input
 mod exact; // the ray/triangle test against exact arithmetic
 mod fakes; // records with known content, a device that breaks on demand
+mod identities; // hashes of kernels and readers do not depend on comments
 mod kernels; // every kernel variant through naga, struct layouts, no GPU
 mod meshes; // closed meshes, and rays at their vertices and edges
 mod reference; // rays traced by Embree (needs RTBENCH_SCENES)

@@ -11,7 +11,7 @@ pub const FORMAT: u32 = 5;
 /// What a cache begins with.
 pub const MAGIC: [u8; 8] = *b"RTBSCENE";
 
-/// A hash of the readers' source, from `build.rs`.
+/// A hash of the readers' source, from `build/main.rs`.
 const READERS: &str = env!("RTBENCH_READERS");
 
 /// Most bytes of texts: names and warnings.

@@ -7,7 +7,7 @@
 //! A cache is refused, never repaired. It is *foreign* without the magic bytes, *truncated* or *corrupt* where lengths or
 //! the checksum do not fit, and **stale** where loading the source again might give another scene:
 //! - the layout has another version ([`FORMAT`]);
-//! - it was written by a program with other readers: `build.rs` hashes their source, so nobody has to remember to raise a
+//! - it was written by a program with other readers: `build/main.rs` hashes their source, so nobody has to remember to raise a
 //!   number;
 //! - one of the files that it was made from, includes and libraries among them, is no longer what it was (`stale.rs`). They
 //!   are looked for where they lay as seen from the cache; if none of them is there, the cache stands for itself.

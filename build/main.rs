@@ -1,12 +1,14 @@
 //! Tells the program where it comes from: git revision, whether it was changed since, compiler, profile, target.
 //! Nothing here may fail: a tarball without git builds as well, and says `unknown`.
 
+mod tokens;
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// What the program is made of: only a change here makes it dirty.
 const SOURCES: [&str; 8] =
-    ["src", "kernels", "camera-paths", "presets", "scenes/catalog.toml", "Cargo.toml", "Cargo.lock", "build.rs"];
+    ["src", "kernels", "camera-paths", "presets", "scenes/catalog.toml", "Cargo.toml", "Cargo.lock", "build"];
 
 fn main() {
     let revision = revision();
@@ -34,10 +36,10 @@ fn main() {
 }
 
 /// A hash (FNV-1a, 64 bits, hexadecimal) of everything that decides which scene a file gives: by it a cache is known to be
-/// stale. `DefaultHasher` would do, but may change with the compiler.
+/// stale. Of Rust sources it takes the tokens, so that comments and layout do not matter, and of the dependencies those that
+/// readers use. `DefaultHasher` would do, but may change with the compiler.
 fn readers() -> String {
-    let mut files =
-        vec![PathBuf::from("src/math.rs"), PathBuf::from("Cargo.lock"), PathBuf::from("scenes/catalog.toml")];
+    let mut files = vec![PathBuf::from("src/math.rs")];
     let mut folders = vec![PathBuf::from("src/scene")];
     while let Some(folder) = folders.pop() {
         for path in std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
@@ -45,9 +47,22 @@ fn readers() -> String {
         }
     }
     files.sort();
-    let bytes = files.iter().flat_map(|file| std::fs::read(file).unwrap_or_default());
-    let hash = bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, b| (hash ^ u64::from(b)).wrapping_mul(0x100_0000_01b3));
+    let read = |path: &Path| std::fs::read_to_string(path).unwrap_or_default();
+    let mut text: String = files.iter().map(|file| tokens::of(&read(file))).collect();
+    text += &read(Path::new("scenes/catalog.toml"));
+    let lock = read(Path::new("Cargo.lock"));
+    text.extend(lock.split("[[package]]").filter(|package| is_of_readers(package)));
+    let hash =
+        text.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, b| (hash ^ u64::from(b)).wrapping_mul(0x100_0000_01b3));
     format!("{hash:016x}")
+}
+
+/// Dependencies that decide what a reader makes of a file.
+const READER_PACKAGES: [&str; 6] = ["glam", "earcut", "gltf", "gltf-json", "base64", "percent-encoding"];
+
+/// True for a package of `Cargo.lock` that is one of them.
+fn is_of_readers(package: &str) -> bool {
+    READER_PACKAGES.iter().any(|name| package.contains(&format!("\nname = \"{name}\"\n")))
 }
 
 /// The revision, if this folder is the top of a repository: a tarball unpacked inside another project's repository
