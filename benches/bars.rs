@@ -7,8 +7,8 @@ mod common;
 
 use common::{Input, median, ratio, sorted};
 use glam::Vec3;
-use rtbench::accel::Selection;
 use rtbench::scene::Scene;
+use rtbench::workloads::trace::Selection;
 use std::hint::black_box;
 use std::time::Instant;
 

@@ -8,8 +8,8 @@ use bvh::bounding_hierarchy::BoundingHierarchy;
 use common::Input;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use obvhs::BvhBuildParams;
-use rtbench::accel::Selection;
 use rtbench::scene::Scene;
+use rtbench::workloads::trace::Selection;
 use std::hint::black_box;
 use std::time::Duration;
 

@@ -12,12 +12,12 @@ use obvhs::BvhBuildParams;
 use obvhs::ray::{Ray, RayHit};
 use obvhs::rt_triangle::RtTriangle;
 use rayon::prelude::*;
-use rtbench::accel::{Built, Selection};
-use rtbench::backend::{Backend, Config, Prepared, Size};
 use rtbench::camera::{CameraPath, View};
-use rtbench::cpu::CpuBackend;
-use rtbench::gpu::{GpuBackend, GpuOptions, Selector};
 use rtbench::scene::Scene;
+use rtbench::workloads::trace::CpuBackend;
+use rtbench::workloads::trace::backend::{Backend, Config, Prepared, Size};
+use rtbench::workloads::trace::gpu::{GpuBackend, GpuOptions, Selector};
+use rtbench::workloads::trace::{Built, Selection};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -43,7 +43,7 @@ fn main() {
 
 fn rays(name: &str, scene: &Scene, side: u32, rounds: usize) {
     let size = Size { width: side, height: side };
-    let path = CameraPath::for_scene(scene, Config::P);
+    let path = CameraPath::for_scene(scene, Config::P.shadows());
     let view = &path.views(scene, Some(1)).expect("a path that fits")[0];
     let input = Input::new(scene);
     let tree = common::obvhs(&input, BvhBuildParams::medium_build());

@@ -12,11 +12,11 @@ use obvhs::BvhBuildParams;
 use obvhs::ray::{Ray, RayHit};
 use obvhs::rt_triangle::RtTriangle;
 use rayon::prelude::*;
-use rtbench::accel::{Selection, variants};
-use rtbench::backend::{Backend, GivenRay};
 use rtbench::camera::Camera;
-use rtbench::cpu::CpuBackend;
 use rtbench::scene::Scene;
+use rtbench::workloads::trace::CpuBackend;
+use rtbench::workloads::trace::backend::{Backend, GivenRay};
+use rtbench::workloads::trace::{Selection, variants};
 use std::hint::black_box;
 use std::time::Duration;
 

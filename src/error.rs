@@ -44,7 +44,7 @@ pub struct Input {
     /// What is wrong.
     pub problem: String,
     /// What to do about it; may be empty.
-    pub mend: String,
+    pub hint: String,
 }
 
 impl fmt::Display for Input {
@@ -54,8 +54,8 @@ impl fmt::Display for Input {
             write!(f, ":{line}")?;
         }
         write!(f, ": {}", self.problem)?;
-        if !self.mend.is_empty() {
-            write!(f, " ({})", self.mend)?;
+        if !self.hint.is_empty() {
+            write!(f, " ({})", self.hint)?;
         }
         Ok(())
     }
@@ -63,13 +63,13 @@ impl fmt::Display for Input {
 
 impl Error {
     /// A problem with a file: `line` counts from 1.
-    pub fn file(path: &Path, line: Option<usize>, problem: impl Into<String>, mend: impl Into<String>) -> Self {
-        Error::Input(Input { place: path.display().to_string(), line, problem: problem.into(), mend: mend.into() })
+    pub fn file(path: &Path, line: Option<usize>, problem: impl Into<String>, hint: impl Into<String>) -> Self {
+        Error::Input(Input { place: path.display().to_string(), line, problem: problem.into(), hint: hint.into() })
     }
 
     /// A problem with an argument; `place` is the flag or the argument's name.
-    pub fn argument(place: impl Into<String>, problem: impl Into<String>, mend: impl Into<String>) -> Self {
-        Error::Input(Input { place: place.into(), line: None, problem: problem.into(), mend: mend.into() })
+    pub fn argument(place: impl Into<String>, problem: impl Into<String>, hint: impl Into<String>) -> Self {
+        Error::Input(Input { place: place.into(), line: None, problem: problem.into(), hint: hint.into() })
     }
 
     /// A failed write to `path`.

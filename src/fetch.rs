@@ -139,8 +139,8 @@ fn download_to(url: &str, path: &Path, silence: Duration, watch: &mut dyn FnMut(
                 let progress = fs::metadata(path).map_or(0, |m| m.len()) > before;
                 failures = if progress { 0 } else { failures + 1 };
                 if failures >= MAX_ATTEMPTS {
-                    let mend = "check the connection; the next attempt continues where this one ended";
-                    return Err(Error::argument(url, format!("the download breaks off: {reason}"), mend));
+                    let hint = "check the connection; the next attempt continues where this one ended";
+                    return Err(Error::argument(url, format!("the download breaks off: {reason}"), hint));
                 }
                 watch(Event::Again(reason));
                 std::thread::sleep(Duration::from_millis(200 * u64::from(failures)));

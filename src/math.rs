@@ -1,4 +1,4 @@
-//! Boxes, rays, and the ray/box test. The ray/triangle tests are in [`crate::intersect`].
+//! Boxes, rays, and the ray/box test. The ray/triangle tests are in [`crate::workloads::trace::intersect`].
 //!
 //! This is the twin of `kernels/lib/geom.wgsl`, operation for operation: on a device that neither contracts nor
 //! approximates (lavapipe), both give the same bits.
@@ -112,7 +112,7 @@ pub struct Ray {
     pub origin_min: Vec3A,
     /// `origin`, but slightly lower on axes on which the direction is zero: for the upper planes of boxes.
     pub origin_max: Vec3A,
-    /// Powers of two near the direction's components, see [`crate::intersect::watertight`].
+    /// Powers of two near the direction's components, see [`crate::workloads::trace::intersect::watertight`].
     pub scale: Vec3A,
     /// `scale`, but zero on axes on which the direction is zero, the major axis excepted.
     pub shear: Vec3A,

@@ -9,9 +9,9 @@ use obvhs::BvhBuildParams;
 use obvhs::bvh2::Bvh2;
 use obvhs::triangle::Triangle;
 use parry3d::partitioning::BvhBuildStrategy;
-use rtbench::accel::prims;
 use rtbench::math::Vertex;
 use rtbench::scene::{Material, Scene, load};
+use rtbench::workloads::trace::common::prims;
 
 /// True under `cargo bench`; false where cargo only tests that the benches run.
 pub fn measuring() -> bool {

@@ -67,10 +67,10 @@ struct Source<'a> {
 }
 
 impl Source<'_> {
-    fn fault(&self, span: Range<usize>, problem: impl Into<String>, mend: impl Into<String>) -> Error {
+    fn fault(&self, span: Range<usize>, problem: impl Into<String>, hint: impl Into<String>) -> Error {
         let before = &self.text.as_bytes()[..span.start.min(self.text.len())];
         let line = 1 + before.iter().filter(|&&b| b == b'\n').count();
-        Error::file(Path::new(self.place), Some(line), problem, mend)
+        Error::file(Path::new(self.place), Some(line), problem, hint)
     }
 
     /// The value or a default, held against a range (bounds excluded).
@@ -80,8 +80,8 @@ impl Source<'_> {
         if number > range.start && number < range.end {
             return Ok(number);
         }
-        let mend = format!("it must lie between {} and {}", range.start, range.end);
-        Err(self.fault(given.span(), format!("{key} = {number} is out of range"), mend))
+        let hint = format!("it must lie between {} and {}", range.start, range.end);
+        Err(self.fault(given.span(), format!("{key} = {number} is out of range"), hint))
     }
 
     fn vector(&self, value: &Spanned<[f32; 3]>, key: &str) -> Result<Vec3> {
@@ -144,8 +144,8 @@ pub(super) fn parse(name: &str, place: &str, text: &str) -> Result<CameraPath> {
         None => 400,
         Some(frames) if (1..=MAX_FRAMES).contains(frames.get_ref()) => *frames.get_ref(),
         Some(frames) => {
-            let mend = format!("it must be 1 to {MAX_FRAMES}");
-            return Err(source.fault(frames.span(), format!("frames = {}", frames.get_ref()), mend));
+            let hint = format!("it must be 1 to {MAX_FRAMES}");
+            return Err(source.fault(frames.span(), format!("frames = {}", frames.get_ref()), hint));
         }
     };
     let up = file.up.as_ref().map_or(Ok(Vec3::Y), |up| source.direction(up, "up"))?;
@@ -186,8 +186,8 @@ pub(super) fn parse(name: &str, place: &str, text: &str) -> Result<CameraPath> {
             Kind::Recorded(recorded)
         }
         other => {
-            let mend = "kinds are orbit, light-orbit, walk, frames";
-            return Err(source.fault(file.kind.span(), format!("kind {other:?} is unknown"), mend));
+            let hint = "kinds are orbit, light-orbit, walk, frames";
+            return Err(source.fault(file.kind.span(), format!("kind {other:?} is unknown"), hint));
         }
     };
     let lights = file.lights.iter().map(|light| {
@@ -243,8 +243,8 @@ fn recorded(source: &Source, file: &File) -> Result<Recorded> {
     let rows = file.poses.as_ref().map(Spanned::get_ref).filter(|rows| (1..=MAX_FRAMES).contains(&rows.len()));
     let Some(rows) = rows else {
         let problem = "recorded frames need `poses`, a row for each";
-        let mend = format!("give 1 to {MAX_FRAMES} rows of time, position, direction and up: ten numbers");
-        return Err(source.fault(file.kind.span(), problem, mend));
+        let hint = format!("give 1 to {MAX_FRAMES} rows of time, position, direction and up: ten numbers");
+        return Err(source.fault(file.kind.span(), problem, hint));
     };
     let pose = |row: &Spanned<[f64; 10]>| {
         let position = DVec3::from_slice(&row.get_ref()[1..4]);

@@ -5,7 +5,6 @@ use super::orbit::{LightOrbit, Orbit};
 use super::recorded::{Recorded, Recording};
 use super::walk::Walk;
 use super::{Camera, View};
-use crate::config::Config;
 use crate::error::{Error, Result};
 use crate::math::Aabb;
 use crate::scene::{Light, Placement, Scene, SceneCamera, did_you_mean};
@@ -134,22 +133,22 @@ impl CameraPath {
         }
     }
 
-    /// The path that the user names, or that fits scene and configuration.
+    /// The path that the user names, or that fits the scene and rays with or without shadows.
     ///
     /// # Errors
     /// Those of [`CameraPath::load`].
-    pub fn named_or_fitting(name: Option<&str>, scene: &Scene, config: Config) -> Result<CameraPath> {
-        name.map_or_else(|| Ok(CameraPath::for_scene(scene, config)), CameraPath::load)
+    pub fn named_or_fitting(name: Option<&str>, scene: &Scene, shadows: bool) -> Result<CameraPath> {
+        name.map_or_else(|| Ok(CameraPath::for_scene(scene, shadows)), CameraPath::load)
     }
 
-    /// The path that fits scene and ray configuration if the user names none: the camera that the scene's file brings;
+    /// The path that fits the scene, and rays with or without `shadows`, if the user names none: the camera that the scene's file brings;
     /// the scene's own path; otherwise the thesis's method for single objects (SPEC section 8), the camera's turn for P
     /// and the light's turn where there are shadows.
-    pub fn for_scene(scene: &Scene, config: Config) -> CameraPath {
+    pub fn for_scene(scene: &Scene, shadows: bool) -> CameraPath {
         if let Some(camera) = scene.camera.as_ref().filter(|camera| !camera.frames.is_empty()) {
             return CameraPath::of_file(scene, camera);
         }
-        let default = if config.shadows() { "light-orbit" } else { "orbit" };
+        let default = if shadows { "light-orbit" } else { "orbit" };
         let own = scene.camera_path.as_deref().and_then(|name| CameraPath::load(name).ok());
         own.unwrap_or_else(|| CameraPath::load(default).expect("an embedded path is sound: a test loads each"))
     }
@@ -300,8 +299,8 @@ impl CameraPath {
 
     /// Interpolation may bring a camera where it cannot look.
     fn check_camera(&self, frame: usize, camera: &Camera) -> Result<()> {
-        let fault = |problem: &str, mend: &str| {
-            Err(Error::argument(&self.place, format!("frame {frame}: {problem}"), mend.to_owned()))
+        let fault = |problem: &str, hint: &str| {
+            Err(Error::argument(&self.place, format!("frame {frame}: {problem}"), hint.to_owned()))
         };
         if !camera.position.is_finite() {
             return fault("the camera's position is not finite", "bring the keys closer to the scene");

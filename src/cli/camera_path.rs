@@ -3,9 +3,9 @@
 use super::library::LibraryArguments;
 use super::output;
 use crate::camera::{self, CameraPath};
-use crate::config::Config;
 use crate::error::{Error, Result};
-use crate::results::files;
+use crate::record::files;
+use crate::workloads::trace::rays::Config;
 use clap::Subcommand;
 use std::path::{Path, PathBuf};
 
@@ -57,7 +57,7 @@ pub fn run(command: &Command) -> Result<()> {
         Command::Export { scene, library, camera_path, frames, out } => {
             let (scene, sources) = library.load_with_sources(scene)?;
             files::keep(out, sources.paths().chain(camera_path.as_deref().map(Path::new)))?;
-            let path = CameraPath::named_or_fitting(camera_path.as_deref(), &scene, Config::P)?;
+            let path = CameraPath::named_or_fitting(camera_path.as_deref(), &scene, Config::P.shadows())?;
             if path.moves_light() {
                 let name = camera_path.as_deref().unwrap_or(&path.name);
                 let problem = "its light moves, and recorded frames have only a camera";

@@ -1,12 +1,12 @@
 //! Which device: flags that several commands share, and the choice that `auto` makes.
 
 use super::output;
-use crate::backend::DeviceType;
-use crate::bench::sweep::Opened;
-use crate::cpu::CpuBackend;
 use crate::error::{Error, Result};
-use crate::gpu::{self, GpuBackend, GpuOptions, Selector};
+use crate::harness::sweep::Opened;
 use crate::threads;
+use crate::workloads::trace::CpuBackend;
+use crate::workloads::trace::backend::DeviceType;
+use crate::workloads::trace::gpu::{self, GpuBackend, GpuOptions, Selector};
 use clap::{Args, ValueEnum};
 
 /// Which device, and how it is used.

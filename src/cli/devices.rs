@@ -2,10 +2,10 @@
 
 use super::device::kind;
 use super::output;
-use crate::backend::{Backend, DeviceInfo};
-use crate::cpu::CpuBackend;
 use crate::error::Result;
-use crate::gpu;
+use crate::workloads::trace::CpuBackend;
+use crate::workloads::trace::backend::{Backend, DeviceInfo};
+use crate::workloads::trace::gpu;
 use clap::Args;
 
 /// List Vulkan adapters with features and limits, and the CPU

@@ -3,7 +3,7 @@
 use super::output;
 use super::runs::RunArguments;
 use crate::error::{Error, Result};
-use crate::results::files;
+use crate::record::files;
 use crate::thesis::figures;
 use clap::Args;
 use std::path::PathBuf;

@@ -23,8 +23,8 @@ mod sweep;
 mod tables;
 mod trace;
 
-use crate::bench::environment;
 use crate::error::Result;
+use crate::harness::environment;
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;

@@ -1,9 +1,9 @@
 //! Progress of a sweep on standard error: a bar on a terminal, plain lines elsewhere.
 
 use super::output;
-use crate::bench::sweep::Event;
-use crate::results::record::{ConfigurationRecord, Status};
-use crate::results::summary;
+use crate::harness::sweep::Event;
+use crate::record::schema::{ConfigurationRecord, Status};
+use crate::record::summary;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};

@@ -4,12 +4,12 @@ use super::device::{self, DeviceArguments};
 use super::interrupt;
 use super::library::LibraryArguments;
 use super::output;
-use crate::accel::Selection;
-use crate::backend::{Config, Counters, Prepared, Size};
-use crate::bench::{pictures, plan};
 use crate::camera::{CameraPath, View};
 use crate::error::{Error, Result};
-use crate::results::picture;
+use crate::harness::{pictures, plan};
+use crate::record::picture;
+use crate::workloads::trace::Selection;
+use crate::workloads::trace::backend::{Config, Counters, Prepared, Size};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -99,7 +99,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let size = plan::parse_size(&arguments.resolution)?;
     arguments.device.check()?;
     let scene = arguments.library.load(&arguments.scene)?;
-    let path = CameraPath::named_or_fitting(arguments.camera_path.as_deref(), &scene, config)?;
+    let path = CameraPath::named_or_fitting(arguments.camera_path.as_deref(), &scene, config.shadows())?;
     let views = path.views(&scene, None)?;
     let view = views.get(arguments.frame).ok_or_else(|| {
         let problem = format!("the path {} has no frame {}", path.name, arguments.frame);

@@ -2,7 +2,7 @@
 
 use super::output;
 use crate::error::{Error, Result};
-use crate::results::files;
+use crate::record::files;
 use crate::thesis::data::Data;
 use crate::thesis::runs::RecordedRun;
 use crate::thesis::splice::{self, Block, Need};

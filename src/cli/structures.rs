@@ -1,9 +1,9 @@
 //! `rtbench structures`: what can be measured.
 
 use super::output;
-use crate::accel::{self, OptionInfo};
 use crate::error::Result;
 use crate::thesis::format::wrap;
+use crate::workloads::trace::{self, OptionInfo};
 use clap::Args;
 
 /// List structures with their options and values, as --structure takes them
@@ -19,7 +19,7 @@ const INDENT: &str = "                     ";
 /// Standard output's.
 pub fn run(_: &Arguments) -> Result<()> {
     let mut text = String::from("Structures, as NAME or NAME:KEY=VALUE,...\n");
-    for variant in accel::variants() {
+    for variant in trace::variants() {
         text += &format!("\n  {}\n      {}\n", variant.name, variant.summary);
         if !variant.paper.is_empty() {
             text += &format!("      after {}\n", variant.paper);
@@ -27,7 +27,7 @@ pub fn run(_: &Arguments) -> Result<()> {
         text += &variant.build_options.iter().chain(variant.walk_options).map(describe).collect::<String>();
     }
     text += "\nOptions of all structures\n";
-    text += &accel::COMMON_OPTIONS.iter().map(describe).collect::<String>();
+    text += &trace::COMMON_OPTIONS.iter().map(describe).collect::<String>();
     output::print(&text)
 }
 

@@ -5,13 +5,14 @@ use super::interrupt;
 use super::library::LibraryArguments;
 use super::output;
 use super::progress::Progress;
-use crate::bench::environment;
-use crate::bench::plan::{Plan, Request};
-use crate::bench::resume::Earlier;
-use crate::bench::sweep::{self, Job};
 use crate::error::{Error, Result};
-use crate::results::record::Status;
-use crate::results::{files, journal, table};
+use crate::harness::environment;
+use crate::harness::plan::{Plan, Request};
+use crate::harness::resume::Earlier;
+use crate::harness::sweep::{self, Job};
+use crate::record::schema::Status;
+use crate::record::table;
+use crate::record::{files, journal};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -138,8 +139,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
 fn from_elsewhere(error: Error) -> Error {
     match error {
         Error::Input(mut input) if is_absent_here(Path::new(&input.place)) => {
-            let separator = if input.mend.is_empty() { "" } else { "; " };
-            input.mend += &format!("{separator}a run is resumed from the folder in which it was begun");
+            let separator = if input.hint.is_empty() { "" } else { "; " };
+            input.hint += &format!("{separator}a run is resumed from the folder in which it was begun");
             Error::Input(input)
         }
         other => other,

@@ -4,11 +4,12 @@ use super::device::{self, DeviceArguments};
 use super::interrupt;
 use super::library::LibraryArguments;
 use super::output;
-use crate::accel::Selection;
-use crate::backend::GivenRay;
 use crate::error::Result;
 use crate::math::MISS;
-use crate::results::{files, rays};
+use crate::record::files;
+use crate::record::rays_csv;
+use crate::workloads::trace::Selection;
+use crate::workloads::trace::backend::GivenRay;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -57,7 +58,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     interrupt::at_once()?;
     arguments.device.check()?;
     files::keep(&arguments.out, [arguments.rays.as_path()].into_iter())?;
-    let exact = rays::read_exact(&arguments.rays)?;
+    let exact = rays_csv::read_exact(&arguments.rays)?;
     let (scene, sources) = arguments.library.load_with_sources(&arguments.scene)?;
     let rays: Vec<_> = exact.iter().map(|ray| ray.place(&scene.placement)).collect();
     files::keep(&arguments.out, sources.paths())?;
@@ -67,7 +68,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let mut prepared = device.backend.prepare(&scene, &built.structure, selection.method())?;
     let given: Vec<GivenRay> = rays.iter().map(|ray| ray.ray).collect();
     let hits = prepared.trace(&given, arguments.any_hit)?;
-    rays::write(&arguments.out, &rays, &hits)?;
+    rays_csv::write(&arguments.out, &rays, &hits)?;
     let found = hits.iter().filter(|hit| hit.triangle != MISS).count();
     output::print(&format!("{}: {found} of {} rays hit\n", arguments.out.display(), hits.len()))
 }

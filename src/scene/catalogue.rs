@@ -156,7 +156,7 @@ impl Entry {
     /// # Errors
     /// [`Error::Input`] if no folder is given, or none of the candidates is there.
     pub fn path_in(&self, folder: Option<&Path>) -> Result<PathBuf> {
-        let absent = |problem: String| Err(Error::argument(&self.name, problem, self.mend()));
+        let absent = |problem: String| Err(Error::argument(&self.name, problem, self.hint()));
         let Some(folder) = folder else {
             return absent("it is a scene of the catalogue, but no folder of scenes is given".into());
         };
@@ -190,7 +190,7 @@ impl Entry {
     }
 
     /// What to do about an absent scene.
-    pub fn mend(&self) -> String {
+    pub fn hint(&self) -> String {
         let place = format!("put it there as {}", self.file[0].path.display());
         let folder = "--scenes-dir or RTBENCH_SCENES name the folder";
         match self.fetch {

@@ -44,12 +44,12 @@ pub fn load_in(what: &str, folder: Option<&Path>) -> Result<Scene> {
         return finish(scene, name, &options);
     }
     if !built_in {
-        let mend = format!("{}; or name a file such as mesh.ply", did_you_mean(bare, &catalogue::all_names()));
-        return Err(Error::argument(what, format!("no file and no scene is called `{bare}`"), mend));
+        let hint = format!("{}; or name a file such as mesh.ply", did_you_mean(bare, &catalogue::all_names()));
+        return Err(Error::argument(what, format!("no file and no scene is called `{bare}`"), hint));
     }
     let mut scene = procedural::build(what)?;
     let extent = Extent::of(&scene);
-    scene.complete(extent).map_err(|(problem, mend)| Error::argument(what, problem, mend))?;
+    scene.complete(extent).map_err(|(problem, hint)| Error::argument(what, problem, hint))?;
     scene.survey();
     Ok(scene)
 }
@@ -73,7 +73,8 @@ pub fn at_time(what: &str, time: f64) -> String {
 
 /// True for built-in scenes, and for scenes of the catalogue whose format knows no time.
 pub fn has_no_time(what: &str) -> bool {
-    let timed = |path: &Path| format_of(path).is_some_and(|(_, _, heeded)| heeded.contains(&"time"));
+    let timed =
+        |path: &Path| format_of(path).is_some_and(|(_, _, supported_options)| supported_options.contains(&"time"));
     let entry = catalogue::find(split_settings(what).0);
     is_built_in(what) || entry.is_some_and(|entry| !entry.file.iter().any(|candidate| timed(&candidate.path)))
 }
@@ -116,7 +117,7 @@ fn finish(mut scene: Scene, place: &str, options: &Options) -> Result<Scene> {
         (None, _) => {}
     }
     let extent = Extent::of(&scene);
-    let fault = |(problem, mend): (String, _)| Error::file(path, None, problem, mend);
+    let fault = |(problem, hint): (String, _)| Error::file(path, None, problem, hint);
     scene.complete(extent).map_err(fault)?;
     let bounds = scene.survey();
     scene.size_fault(bounds).map_or(Ok(()), |found| Err(fault(found)))?;
@@ -158,8 +159,8 @@ fn read(what: &str, name: &str, settings: &str, options: &Options) -> Result<Sce
     let taken = (folder && 1 < taken.len()).then(|| format!("made of {}", taken.join(", ")));
     let mut scenes = scenes.into_iter().map(|(_, scene)| scene);
     let Some(mut scene) = scenes.next() else {
-        let mend = format!("known extensions: {}", extensions());
-        return Err(Error::file(whole, None, "the folder holds no file of a known format", mend));
+        let hint = format!("known extensions: {}", extensions());
+        return Err(Error::file(whole, None, "the folder holds no file of a known format", hint));
     };
     scenes.for_each(|other| append(&mut scene, other));
     scene.name = if folder { folder_name(whole) } else { names.join("+") };
@@ -191,17 +192,17 @@ fn placement_warning(scene: &Scene, options: &Options, moved: bool) -> Option<St
 fn check_settings(what: &str, settings: &str, files: &[PathBuf]) -> Result<()> {
     let formats: Vec<_> = files.iter().filter_map(|file| format_of(file)).collect();
     let [(extension, ..), ..] = formats.as_slice() else { return Ok(()) };
-    let mut heeded = Options::COMMON.to_vec();
-    heeded.extend(formats.iter().flat_map(|(_, _, heeded)| heeded.iter()));
-    heeded.dedup();
+    let mut supported_options = Options::COMMON.to_vec();
+    supported_options.extend(formats.iter().flat_map(|(_, _, supported_options)| supported_options.iter()));
+    supported_options.dedup();
     let key = |setting: &str| setting.split('=').next().unwrap_or(setting).to_owned();
-    match split(settings).iter().map(|s| key(s)).find(|key| !heeded.contains(&key.as_str())) {
+    match split(settings).iter().map(|s| key(s)).find(|key| !supported_options.contains(&key.as_str())) {
         None => Ok(()),
         Some(key) => {
             let cache =
                 if *extension == super::cache::EXTENSION { ": give it to `rtbench scenes convert`" } else { "" };
             let problem = format!("a .{extension} file has no option `{key}`{cache}");
-            Err(Error::argument(what, problem, format!("its options are {}", heeded.join(", "))))
+            Err(Error::argument(what, problem, format!("its options are {}", supported_options.join(", "))))
         }
     }
 }
@@ -267,12 +268,12 @@ fn read_one(path: &Path, options: &Options) -> Result<Scene> {
         return reader(path, options);
     }
     let known = || format!("known extensions: {}", extensions());
-    let (problem, mend) = match (path.exists(), path.is_dir()) {
+    let (problem, hint) = match (path.exists(), path.is_dir()) {
         (false, _) => ("no such file", "check the path".to_owned()),
         (_, true) => ("it is a folder, and a list is one of files", "name its files, or the folder alone".to_owned()),
         _ => ("the format is unknown: formats are told by the file's extension", known()),
     };
-    Err(Error::file(path, None, problem, mend))
+    Err(Error::file(path, None, problem, hint))
 }
 
 fn extensions() -> String {

@@ -199,7 +199,7 @@ impl Scene {
     /// [`Error::Input`] that names the scene and the first invariant that does not hold.
     pub fn check(&self) -> Result<()> {
         self.first_fault(Extent::of(self))
-            .map_or(Ok(()), |(problem, mend)| Err(Error::argument(self.name.clone(), problem, mend)))
+            .map_or(Ok(()), |(problem, hint)| Err(Error::argument(self.name.clone(), problem, hint)))
     }
 
     /// The first invariant that does not hold: problem and mend. `extent` is this scene's.
@@ -362,7 +362,7 @@ fn read_text(path: &Path) -> Result<Vec<u8>> {
 
 /// The bytes of a file as they are.
 fn read_file(path: &Path) -> Result<Vec<u8>> {
-    let fault = |problem: String, mend| Error::file(path, None, problem, mend);
+    let fault = |problem: String, hint| Error::file(path, None, problem, hint);
     let metadata = match std::fs::metadata(path) {
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
             return Err(fault("no such file".into(), "check the path"));

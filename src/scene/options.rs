@@ -141,7 +141,7 @@ impl Options {
         let mut options = Options::default();
         for setting in self::settings(settings) {
             let (key, value) = setting.split_once('=').unwrap_or((&setting, ""));
-            let wrong = |mend: &str| Error::argument(what, format!("{key}: `{value}` does not do"), mend);
+            let wrong = |hint: &str| Error::argument(what, format!("{key}: `{value}` does not do"), hint);
             match key {
                 "time" => match value.parse() {
                     Ok(time) if f64::is_finite(time) => options.time = Some(time),

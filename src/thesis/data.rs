@@ -6,8 +6,8 @@ use super::number::Number;
 use super::scenes::{SceneKey, ThesisScene};
 use super::variant::Variant;
 use super::workload::Workload;
-use crate::accel::Properties;
-use crate::backend::{Config, DeviceType};
+use crate::workloads::trace::Properties;
+use crate::workloads::trace::backend::{Config, DeviceType};
 use std::cmp::Reverse;
 
 /// The structures of the thesis, in its order.

@@ -6,11 +6,11 @@ use super::runs::RecordedRun;
 use super::scenes::SceneKey;
 use super::variant::Variant;
 use super::workload::{self, Candidate, Workload};
-use crate::backend::{DeviceInfo, DeviceType};
-use crate::results::record::{
+use crate::record::schema::{
     ConfigurationRecord, CounterSums, Environment, Provenance, SceneRecord, Status, StructureRecord,
 };
-use crate::results::summary::Row;
+use crate::record::summary::Row;
+use crate::workloads::trace::backend::{DeviceInfo, DeviceType};
 
 /// Everything that runs have measured. Of several measurements of the same, the last complete one counts; where frames
 /// differ in what they show, one workload fills the rows ([`workload`]).

@@ -6,8 +6,8 @@ use super::number::Number;
 use super::scenes::{SceneKey, ThesisScene};
 use super::variant::Variant;
 use super::workload::Workload;
-use crate::accel::Properties;
-use crate::backend::{Config, RAY_TYPES};
+use crate::workloads::trace::Properties;
+use crate::workloads::trace::backend::{Config, RAY_TYPES};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 

@@ -1,7 +1,7 @@
 //! Recorded runs, read back.
 
 use crate::error::{Error, Result};
-use crate::results::journal::{FILE_NAME, Journal};
+use crate::record::journal::{FILE_NAME, Journal};
 use std::path::{Path, PathBuf};
 
 /// A run, with what its folder holds beside the journal.
@@ -19,14 +19,14 @@ impl RecordedRun {
     /// # Errors
     /// [`Error::Input`]: there is none, it is damaged, or nothing was measured.
     pub fn read(path: &Path) -> Result<RecordedRun> {
-        let mend = "give the folder that `rtbench sweep` wrote";
+        let hint = "give the folder that `rtbench sweep` wrote";
         let (folder, journal) = if path.is_dir() {
             (path.to_owned(), path.join(FILE_NAME))
         } else {
             (path.parent().unwrap_or(Path::new("")).to_owned(), path.to_owned())
         };
         if path.is_dir() && !journal.is_file() {
-            return Err(Error::file(path, None, format!("no run: there is no {FILE_NAME} in it"), mend));
+            return Err(Error::file(path, None, format!("no run: there is no {FILE_NAME} in it"), hint));
         }
         let run = Journal::read(&journal)?;
         if run.structures.is_empty() && run.configurations.is_empty() {

@@ -1,7 +1,7 @@
 //! The nine scenes of the thesis, and which of them a recorded scene is, if any.
 
 use crate::camera;
-use crate::results::record::{ConfigurationRecord, SceneRecord};
+use crate::record::schema::{ConfigurationRecord, SceneRecord};
 use crate::scene::{Options, catalogue};
 use std::fmt;
 

@@ -58,8 +58,8 @@ pub fn splice(path: &Path, text: &str, blocks: &[Block], need: Need) -> Result<S
     let (Some(first), false) = (missing.first(), need == Need::Any && missing.len() < blocks.len()) else {
         return Ok(out);
     };
-    let mend = format!("put <!-- rtbench:{first} --> and {} where it is to stand, each on a line", end_of(first));
-    Err(Error::file(path, None, format!("no place for {}", missing.join(", ")), mend))
+    let hint = format!("put <!-- rtbench:{first} --> and {} where it is to stand, each on a line", end_of(first));
+    Err(Error::file(path, None, format!("no place for {}", missing.join(", ")), hint))
 }
 
 fn end_of(name: &str) -> String {

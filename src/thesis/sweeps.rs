@@ -3,7 +3,7 @@
 use super::data::{Data, Frame};
 use super::scenes::SceneKey;
 use super::variant::Variant;
-use crate::backend::Config;
+use crate::workloads::trace::backend::Config;
 
 /// A grid of some resolution.
 #[derive(Clone, Copy, Debug)]

@@ -7,8 +7,8 @@
 use super::data::{Data, Frame};
 use super::scenes::SceneKey;
 use super::variant::Variant;
-use crate::backend::Config;
-use crate::results::record::ConfigurationRecord;
+use crate::record::schema::ConfigurationRecord;
+use crate::workloads::trace::backend::Config;
 
 /// What the frames of a measurement show. Default where it is not known, as of what the thesis printed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

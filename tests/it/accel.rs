@@ -9,8 +9,8 @@ mod thesis;
 
 use glam::Vec3;
 use proptest::prelude::*;
-use rtbench::accel::{Selection, Structure};
 use rtbench::scene::Scene;
+use rtbench::workloads::trace::{Selection, Structure};
 
 /// Every builder, with options that lead through other code.
 pub const SELECTIONS: [&str; 22] = [
@@ -73,7 +73,7 @@ fn no_bvh_is_deeper_than_the_bound() {
     let far = scenes::soup("powers of ten", (-240..240).map(|i| [corners(i), corners(i), corners(i)]));
     let Structure::Bvh(bvh) = build("bvh:max_leaf=1,bins=2", &far, 1) else { unreachable!() };
     assert!(bvh.depth > 20, "the scene is no challenge: depth {}", bvh.depth);
-    assert!(bvh.depth <= rtbench::accel::bvh::MAX_DEPTH);
+    assert!(bvh.depth <= rtbench::workloads::trace::bvh::MAX_DEPTH);
 }
 
 /// By the heuristic's own measure: leaves where they pay, and more of them the more a step costs.
@@ -83,7 +83,7 @@ fn a_bvh_s_cost_constants_decide_about_leaves() {
     let nodes = |selection: &str| {
         let built = build(selection, &scene, 1);
         let Structure::Bvh(bvh) = &built else { unreachable!() };
-        (bvh.nodes.len(), rtbench::accel::sah::CostModel::default().bvh(bvh).unwrap())
+        (bvh.nodes.len(), rtbench::workloads::trace::common::sah::CostModel::default().bvh(bvh).unwrap())
     };
     let (small, large) = (nodes("bvh:max_leaf=1"), nodes("bvh:max_leaf=15"));
     assert_eq!(nodes("bvh:max_leaf=15,kt=inf,ki=3"), large);
@@ -127,7 +127,7 @@ fn bytes(structure: &Structure) -> Vec<u8> {
         Structure::KdTree(s) => bytemuck::cast_slice(&s.nodes),
         Structure::Bvh(s) => bytemuck::cast_slice(&s.nodes),
     };
-    [nodes, bytemuck::cast_slice(structure.records())].concat()
+    [nodes, bytemuck::cast_slice(structure.triangle_refs())].concat()
 }
 
 #[test]

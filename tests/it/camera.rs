@@ -2,11 +2,11 @@
 
 use crate::support::file_below;
 use glam::Vec3;
-use rtbench::backend::Config;
 use rtbench::camera::{CameraPath, View, names, to_csv, to_toml};
-use rtbench::intersect::watertight::intersect;
 use rtbench::math::{Ray, T_MAX};
 use rtbench::scene::{self, Pose, Scene, SceneCamera};
+use rtbench::workloads::trace::backend::Config;
+use rtbench::workloads::trace::intersect::watertight::intersect;
 use std::process::Command;
 
 fn small(name: &str) -> Scene {
@@ -54,15 +54,15 @@ fn every_embedded_path_is_sound_and_has_the_thesis_number_of_frames() {
 fn every_built_in_scene_finds_its_path() {
     for info in scene::list() {
         let scene = small(info.name);
-        let p = CameraPath::for_scene(&scene, Config::P);
-        let psr = CameraPath::for_scene(&scene, Config::PSR);
+        let p = CameraPath::for_scene(&scene, Config::P.shadows());
+        let psr = CameraPath::for_scene(&scene, Config::PSR.shadows());
         match &scene.camera_path {
             Some(own) => assert_eq!((&p.name, &psr.name), (own, own)),
             None => assert_eq!((p.name.as_str(), psr.name.as_str()), ("orbit", "light-orbit")),
         }
     }
     let unknown = Scene { camera_path: Some("gone".into()), ..small("hall") };
-    assert_eq!(CameraPath::for_scene(&unknown, Config::PS).name, "light-orbit");
+    assert_eq!(CameraPath::for_scene(&unknown, Config::PS.shadows()).name, "light-orbit");
 }
 
 #[test]
@@ -306,7 +306,7 @@ fn a_scene_with_a_camera_of_its_own_is_seen_through_it() {
     let scene = filmed(30);
     let poses = &scene.camera.as_ref().unwrap().frames;
     for config in Config::ALL {
-        let path = CameraPath::for_scene(&scene, config);
+        let path = CameraPath::for_scene(&scene, config.shadows());
         assert_eq!((path.name.as_str(), path.frames, path.field_of_view), ("film", 30, 36.869_892));
         let views = path.views(&scene, None).unwrap();
         assert_eq!(views.len(), 30);
@@ -324,11 +324,11 @@ fn a_scene_with_a_camera_of_its_own_is_seen_through_it() {
         assert!(path.views(&scene, Some(31)).is_err());
     }
     let moved = Scene { camera: filmed(31).camera, ..filmed(30) };
-    let hash = |scene: &Scene| CameraPath::for_scene(scene, Config::P).content_hash();
+    let hash = |scene: &Scene| CameraPath::for_scene(scene, Config::P.shadows()).content_hash();
     assert_ne!(hash(&scene), hash(&moved));
     // A camera that stands still has one frame to show, however many are wanted
     let still = filmed(1);
-    let path = CameraPath::for_scene(&still, Config::PSR);
+    let path = CameraPath::for_scene(&still, Config::PSR.shadows());
     for frames in [None, Some(1), Some(20)] {
         assert_eq!(path.views(&still, frames).unwrap().len(), 1);
     }
@@ -346,14 +346,14 @@ fn more_frames_than_there_are() {
         std::fs::write(&file, text).unwrap();
         CameraPath::load(file.to_str().unwrap()).unwrap()
     };
-    for (path, mend) in [
-        (CameraPath::for_scene(&scene, Config::P), "(take 1 to 30 frames)"),
+    for (path, hint) in [
+        (CameraPath::for_scene(&scene, Config::P.shadows()), "(take 1 to 30 frames)"),
         (CameraPath::load("orbit").unwrap(), "(take 1 to 400 frames)"),
         (load(poses), "(take 1 to 2 frames, or add poses to the file)"),
         (load(WALK), "(take 1 to 10 frames, or raise `frames` in the file)"),
     ] {
         let message = refused(path);
-        assert!(message.ends_with(mend), "{message}");
+        assert!(message.ends_with(hint), "{message}");
     }
 }
 
@@ -364,7 +364,7 @@ fn an_exported_path_shows_the_same_views_to_the_bit() {
         "{WALK}[[lights]]\nposition = [0.3, 1, 0.7]\nrelative = true\n[[lights]]\nposition = [1, 2, 3]\ncolour = [0.1, 0, 1]\n"
     );
     for path in [
-        CameraPath::for_scene(&scene, Config::P),
+        CameraPath::for_scene(&scene, Config::P.shadows()),
         CameraPath::load("orbit").unwrap(),
         from_text(WALK).unwrap(),
         from_text(&with_lights).unwrap(),
@@ -375,7 +375,7 @@ fn an_exported_path_shows_the_same_views_to_the_bit() {
         assert_eq!(again.poses(&scene, None).unwrap(), recorded);
         assert_eq!(again.views(&scene, None).unwrap(), path.views(&scene, None).unwrap(), "{}", path.name);
     }
-    let recorded = CameraPath::for_scene(&scene, Config::P).poses(&scene, Some(100)).unwrap();
+    let recorded = CameraPath::for_scene(&scene, Config::P.shadows()).poses(&scene, Some(100)).unwrap();
     let csv = to_csv(&recorded);
     let mut lines = csv.lines();
     assert_eq!(lines.next(), Some("frame,time,pos_x,pos_y,pos_z,dir_x,dir_y,dir_z,up_x,up_y,up_z"));
@@ -423,7 +423,7 @@ fn the_cameras_of_the_real_scenes_are_the_references() {
         let Some(scene) = file_below("RTBENCH_SCENES", scene) else { return };
         let Some(reference) = file_below(variable, &format!("{beside}{reference}")) else { return };
         let scene = rtbench::scene::load(scene.to_str().unwrap()).unwrap();
-        let recorded = CameraPath::for_scene(&scene, Config::PSR).poses(&scene, None).unwrap();
+        let recorded = CameraPath::for_scene(&scene, Config::PSR.shadows()).poses(&scene, None).unwrap();
         assert_eq!(recorded.frames.len(), frames);
         let mut rows = 0;
         for row in csv::Reader::from_path(reference).unwrap().records() {
@@ -458,7 +458,8 @@ fn the_program_exports_the_path_of_a_file_at_a_time() {
     }
     assert_eq!(std::fs::read_to_string(file("path.csv")).unwrap().lines().count(), 6);
     let scene = scene::load(&file("film.aff")).unwrap();
-    let [own, exported] = [CameraPath::for_scene(&scene, Config::P), CameraPath::load(&file("path.toml")).unwrap()];
+    let [own, exported] =
+        [CameraPath::for_scene(&scene, Config::P.shadows()), CameraPath::load(&file("path.toml")).unwrap()];
     assert_eq!(own.views(&scene, None).unwrap(), exported.views(&scene, None).unwrap());
     assert!(run(&["camera-path", "list"]).contains("sphereflake"));
     for (time, right) in [(None, 4.0), (Some("1"), 4.0), (Some("2"), 5.0)] {

@@ -1,9 +1,9 @@
 //! The program as a user runs it. Everything here runs on the CPU twins and on tiny scenes.
 
-use rtbench::backend::Config;
-use rtbench::results::journal::{FILE_NAME, Journal};
-use rtbench::results::record::Status;
-use rtbench::results::summary::{Row, Run, StructureRow};
+use rtbench::record::journal::{FILE_NAME, Journal};
+use rtbench::record::schema::Status;
+use rtbench::record::summary::{Row, Run, StructureRow};
+use rtbench::workloads::trace::backend::Config;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::Path;
 use std::process::{Command, Output, Stdio};

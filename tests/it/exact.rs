@@ -5,10 +5,10 @@ use crate::meshes::{Aim, aimed, icosphere, lattice, room};
 use crate::support::random;
 use glam::{DVec3, Vec3, Vec3A, Vec3Swizzles};
 use num_bigint::BigInt;
-use rtbench::backend::GivenRay;
-use rtbench::intersect::{TriangleHit, watertight};
 use rtbench::math::{Ray, T_MAX};
 use rtbench::scene::Scene;
+use rtbench::workloads::trace::backend::GivenRay;
+use rtbench::workloads::trace::intersect::{TriangleHit, watertight};
 
 /// A ray/triangle test: the one of the program, or a mutant of it.
 type Test = dyn Fn(&Ray, [Vec3A; 3]) -> Option<TriangleHit>;

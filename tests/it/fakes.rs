@@ -1,19 +1,19 @@
 //! Records with known content, and a device that can be told to break.
 
-use rtbench::accel::{Method, Structure, Traversal};
-use rtbench::backend::{
-    Backend, Config, CountedPixel, DeviceInfo, DeviceType, FrameTime, GivenRay, Interrupted, Pixel, Prepared, Size,
-    Timed,
-};
-use rtbench::bench::environment;
 use rtbench::camera::View;
-use rtbench::cpu::CpuBackend;
+use rtbench::harness::environment;
 use rtbench::math::Hit;
-use rtbench::results::record::{
+use rtbench::record::schema::{
     ConfigurationRecord, CounterSums, Environment, Memory, PlanRecord, Provenance, SCHEMA, Samples, SceneRecord,
     Status, StructureRecord, TimingSource,
 };
 use rtbench::scene::Scene;
+use rtbench::workloads::trace::CpuBackend;
+use rtbench::workloads::trace::backend::{
+    Backend, Config, CountedPixel, DeviceInfo, DeviceType, FrameTime, GivenRay, Interrupted, Pixel, Prepared, Size,
+    Timed,
+};
+use rtbench::workloads::trace::{Method, Structure, Traversal};
 use rtbench::{Error, Result};
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;

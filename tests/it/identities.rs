@@ -1,8 +1,8 @@
 //! Identities that do not depend on comments: of kernels (`gpu::tokens` has its own tests) and of the readers' sources.
 
-use rtbench::accel::Selection;
-use rtbench::backend::Config;
-use rtbench::gpu::kernels::{Entry, Kernel};
+use rtbench::workloads::trace::Selection;
+use rtbench::workloads::trace::backend::Config;
+use rtbench::workloads::trace::gpu::kernels::{Entry, Kernel};
 
 #[path = "../../build/tokens.rs"]
 mod tokens;

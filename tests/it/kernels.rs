@@ -2,14 +2,14 @@
 //! sides. Needs no GPU.
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use rtbench::accel::method::{KdSearch, Vote};
-use rtbench::accel::octants::Octant;
-use rtbench::accel::{Selection, Traversal, variants};
-use rtbench::backend::{Config, CountedPixel, Counters, Pixel};
-use rtbench::gpu::kernels::{self, Entry, Kernel, Source};
-use rtbench::gpu::{FrameUniform, StructureUniform, TraceRay};
 use rtbench::math::Vertex;
 use rtbench::scene::{Light, Material};
+use rtbench::workloads::trace::backend::{Config, CountedPixel, Counters, Pixel};
+use rtbench::workloads::trace::gpu::kernels::{self, Entry, Kernel, Source};
+use rtbench::workloads::trace::gpu::{FrameUniform, StructureUniform, TraceRay};
+use rtbench::workloads::trace::grid::octants::Octant;
+use rtbench::workloads::trace::method::{KdSearch, Vote};
+use rtbench::workloads::trace::{Selection, Traversal, variants};
 use std::mem::offset_of;
 
 fn assemble(kernel: &Kernel) -> Source {
@@ -133,7 +133,7 @@ fn struct_layouts_agree() {
         module,
         "Structure",
         StructureUniform,
-        [bounds_min, cell_size, bounds_max, records, resolution, octants]
+        [bounds_min, cell_size, bounds_max, triangle_refs, resolution, octants]
     );
     same_layout!(module, "Octant", Octant, [step, end]);
     same_layout!(module, "Vertex", Vertex, [position, normal]);
@@ -147,9 +147,9 @@ fn struct_layouts_agree() {
     let module = &render(Traversal::BvhStack, false);
     same_layout!(module, "Pixel", Pixel, [triangle, rgba]);
     let (span, members) = layout(module, "Node");
-    assert_eq!(span as usize, size_of::<rtbench::accel::bvh::BvhNode>());
+    assert_eq!(span as usize, size_of::<rtbench::workloads::trace::bvh::BvhNode>());
     let offsets: Vec<_> = members.iter().map(|m| m.1 as usize).collect();
-    use rtbench::accel::bvh::BvhNode;
+    use rtbench::workloads::trace::bvh::BvhNode;
     assert_eq!(
         offsets,
         [offset_of!(BvhNode, min), offset_of!(BvhNode, first), offset_of!(BvhNode, max), offset_of!(BvhNode, count)]

@@ -2,9 +2,9 @@
 
 use crate::support::random;
 use glam::Vec3;
-use rtbench::backend::GivenRay;
 use rtbench::math::Vertex;
 use rtbench::scene::{Light, Material, Scene, Triangle};
+use rtbench::workloads::trace::backend::GivenRay;
 use std::collections::HashMap;
 
 /// A scene of one matt material and one light.

@@ -4,11 +4,11 @@
 
 use crate::support::{file_below, gpu};
 use glam::Vec3;
-use rtbench::accel::{Selection, variants};
-use rtbench::backend::{Backend, GivenRay};
-use rtbench::cpu::CpuBackend;
 use rtbench::math::{Hit, MISS};
 use rtbench::scene::{self, Scene};
+use rtbench::workloads::trace::CpuBackend;
+use rtbench::workloads::trace::backend::{Backend, GivenRay};
+use rtbench::workloads::trace::{Selection, variants};
 use std::path::Path;
 
 fn read_rays(path: &Path) -> (Vec<GivenRay>, Vec<Hit>) {

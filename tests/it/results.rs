@@ -2,13 +2,15 @@
 
 use crate::fakes::{configuration, provenance, structure};
 use proptest::prelude::*;
-use rtbench::backend::{Config, GivenRay};
+use rtbench::Error;
+use rtbench::harness::measure;
 use rtbench::math::{Hit, MISS};
-use rtbench::results::journal::{Journal, JournalWriter};
-use rtbench::results::record::{CounterSums, End, Record, Samples, Status, TimingSource};
-use rtbench::results::summary::{Row, Run, StructureRow, structures_csv, summary_csv};
-use rtbench::results::{files, picture, rays, statistics, table};
-use rtbench::{Error, bench::measure};
+use rtbench::record::journal::{Journal, JournalWriter};
+use rtbench::record::schema::{CounterSums, End, Record, Samples, Status, TimingSource};
+use rtbench::record::summary::{Row, Run, StructureRow, structures_csv, summary_csv};
+use rtbench::record::{files, picture, statistics};
+use rtbench::record::{rays_csv, table};
+use rtbench::workloads::trace::backend::{Config, GivenRay};
 use std::path::{Path, PathBuf};
 
 /// The columns as the issue names them, in its order.
@@ -194,7 +196,7 @@ fn tables_say_what_the_device_is_good_for() {
     let text = table::run(&run);
     assert!(text.contains("software rasteriser") && text.contains("do not rank structures for a GPU"), "{text}");
     assert!(text.contains("ERROR") && text.contains("3 hits differ"), "{text}");
-    run.run.device.device_type = rtbench::backend::DeviceType::DiscreteGpu;
+    run.run.device.device_type = rtbench::workloads::trace::backend::DeviceType::DiscreteGpu;
     assert!(!table::run(&run).contains("do not rank"));
 }
 
@@ -227,7 +229,7 @@ fn rays_and_hits_as_csv() {
     let path = folder.path().join("rays.csv");
     let read = |text: &str| {
         std::fs::write(&path, text).unwrap();
-        rays::read(&path)
+        rays_csv::read(&path)
     };
     // Any order, further columns, spaces, Windows line ends, a byte order mark.
     let given = read(
@@ -251,9 +253,9 @@ fn rays_and_hits_as_csv() {
         assert!(error.contains(problem) && !error.contains('\n'), "{text:?}: {error}");
     }
     std::fs::write(&path, b"\xff\xfe\x00").unwrap();
-    assert!(matches!(rays::read(&path), Err(Error::Input(_))));
+    assert!(matches!(rays_csv::read(&path), Err(Error::Input(_))));
     let hits = [Hit { t: 0.1, triangle: 7 }, Hit::NONE, Hit { t: 1.0e-30, triangle: 0 }];
-    let text = rays::to_csv(&hits);
+    let text = rays_csv::to_csv(&hits);
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!((lines[0], lines[1], lines[2]), ("t,triangle", "0.1,7", ",-1"));
     assert_eq!(lines[3].split(',').next().unwrap().parse::<f32>().unwrap(), 1.0e-30);
@@ -266,11 +268,11 @@ proptest! {
     fn any_bytes_as_rays(bytes in prop::collection::vec(any::<u8>(), 0..200), with_header in any::<bool>()) {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("rays.csv");
-        let mut content = if with_header { rays::COLUMNS.join(",").into_bytes() } else { Vec::new() };
+        let mut content = if with_header { rays_csv::COLUMNS.join(",").into_bytes() } else { Vec::new() };
         content.push(b'\n');
         content.extend(bytes);
         std::fs::write(&path, content).unwrap();
-        if let Err(error) = rays::read(&path) {
+        if let Err(error) = rays_csv::read(&path) {
             prop_assert!(!error.to_string().contains('\n'), "{}", error);
         }
     }
@@ -299,7 +301,14 @@ fn names_become_file_names() {
 #[test]
 fn counters_and_end_are_plain_numbers() {
     let mut sums = CounterSums::default();
-    let counters = rtbench::backend::Counters { rays: 1, inner: u32::MAX, leaves: 2, tests: 3, pops: 4, restarts: 5 };
+    let counters = rtbench::workloads::trace::backend::Counters {
+        rays: 1,
+        inner: u32::MAX,
+        leaves: 2,
+        tests: 3,
+        pops: 4,
+        restarts: 5,
+    };
     sums.add(&counters);
     sums.add(&counters);
     assert_eq!((sums.rays, sums.steps(), sums.pops), (2, 2 * u64::from(u32::MAX) + 4, 8));

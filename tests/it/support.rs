@@ -1,9 +1,9 @@
 //! What several modules need: small scenes, random numbers, the GPU if there is one, files of others.
 
 use glam::Vec3;
-use rtbench::gpu::{GpuBackend, GpuOptions, Selector};
 use rtbench::math::Vertex;
 use rtbench::scene::{Light, Material, Scene, Triangle};
+use rtbench::workloads::trace::gpu::{GpuBackend, GpuOptions, Selector};
 use std::path::PathBuf;
 use std::sync::OnceLock;
 

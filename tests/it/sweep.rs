@@ -1,15 +1,15 @@
 //! The sweep loop on a device that breaks in the ways devices break, and the plan before it.
 
 use crate::fakes::{Fault, Faulty};
-use rtbench::accel::{Selection, Traversal};
-use rtbench::backend::{Backend, Config, Size};
-use rtbench::bench::batch::order;
-use rtbench::bench::plan::{Plan, Request, check_size, parse_list, parse_size};
-use rtbench::bench::resume::Earlier;
-use rtbench::bench::sweep::{self, Event, Job, Opened, Outcome};
-use rtbench::cpu::CpuBackend;
-use rtbench::results::journal::{FILE_NAME, Journal};
-use rtbench::results::record::{ConfigurationRecord, Failure, Status};
+use rtbench::harness::batch::order;
+use rtbench::harness::plan::{Plan, Request, check_size, parse_list, parse_size};
+use rtbench::harness::resume::Earlier;
+use rtbench::harness::sweep::{self, Event, Job, Opened, Outcome};
+use rtbench::record::journal::{FILE_NAME, Journal};
+use rtbench::record::schema::{ConfigurationRecord, Failure, Status};
+use rtbench::workloads::trace::CpuBackend;
+use rtbench::workloads::trace::backend::{Backend, Config, Size};
+use rtbench::workloads::trace::{Selection, Traversal};
 use rtbench::{Error, Result};
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
@@ -352,7 +352,7 @@ fn a_run_is_not_taken_up_by_another_program_device_or_plan() {
         }
     };
     let plan = Plan::new(&request()).unwrap();
-    let hash = rtbench::bench::environment::program().executable_hash.unwrap();
+    let hash = rtbench::harness::environment::program().executable_hash.unwrap();
     let error = refused(&replace(&hash, "0123"), &plan);
     assert!(error.contains("another build of the program") && error.contains("begin a new run"), "{error}");
     let error = refused(&replace("\"device\":{\"name\":\"", "\"device\":{\"name\":\"not "), &plan);
@@ -409,7 +409,7 @@ fn a_scene_that_the_preset_names_keeps_its_own_parts() {
             structures: structures.iter().map(|s| s.to_string()).collect(),
             ..Request::default()
         });
-        let part = |part: &rtbench::bench::plan::Part| {
+        let part = |part: &rtbench::harness::plan::Part| {
             let names = part.selections.iter().map(|s| format!("{} {}", s.name(), s.variant()));
             (names.collect::<Vec<_>>().join(", "), part.sizes[0].width)
         };

@@ -4,13 +4,15 @@
 use crate::support::{gpu, random, soup};
 use glam::Vec3;
 use proptest::prelude::*;
-use rtbench::accel::{Selection, variants};
-use rtbench::backend::{Backend, Config, CountedPixel, DeviceInfo, DeviceType, GivenRay, Pixel, Size};
-use rtbench::bench::verify::COUNTER_SHARE;
 use rtbench::camera::{Camera, View};
-use rtbench::cpu::CpuBackend;
+use rtbench::harness::verify::COUNTER_SHARE;
 use rtbench::math::{Hit, MISS};
 use rtbench::scene::{Light, Material, Scene};
+use rtbench::workloads::trace::CpuBackend;
+use rtbench::workloads::trace::backend::{
+    Backend, Config, CountedPixel, DeviceInfo, DeviceType, GivenRay, Pixel, Size,
+};
+use rtbench::workloads::trace::{Selection, variants};
 
 /// Rays of every character around a box from -1 to 1.
 fn rays(count: usize, seed: u32) -> Vec<GivenRay> {
@@ -248,7 +250,7 @@ fn gpu_counts_what_its_twin_counts() {
                     assert_eq!(kernel.counters, twin.counters, "{place}");
                     let channels = kernel.pixel.rgba.to_le_bytes().into_iter().zip(twin.pixel.rgba.to_le_bytes());
                     let worst = channels.map(|(a, b)| a.abs_diff(b)).max().unwrap();
-                    assert!(worst <= rtbench::bench::verify::COLOUR_LEVELS, "{place}: colours differ by {worst}");
+                    assert!(worst <= rtbench::harness::verify::COLOUR_LEVELS, "{place}: colours differ by {worst}");
                 }
             }
         }

@@ -3,14 +3,14 @@
 
 use crate::support::soup;
 use glam::Vec3;
-use rtbench::accel::{Selection, Structure};
-use rtbench::backend::*;
-use rtbench::bench::verify::{COLOUR_LEVELS, Verdict, Verifier};
 use rtbench::camera::{Camera, View};
-use rtbench::cpu::CpuBackend;
 use rtbench::error::Result;
+use rtbench::harness::verify::{COLOUR_LEVELS, Verdict, Verifier};
 use rtbench::math::{Hit, MISS};
 use rtbench::scene::Scene;
+use rtbench::workloads::trace::CpuBackend;
+use rtbench::workloads::trace::backend::*;
+use rtbench::workloads::trace::{Selection, Structure};
 
 const SIZE: Size = Size { width: 40, height: 24 };
 
@@ -239,9 +239,9 @@ fn a_wrong_reference_is_noticed() {
     let scene = soup(200, 22, false);
     let mut tree = Selection::parse("bvh").unwrap().build(&scene, 1).unwrap().structure;
     let Structure::Bvh(bvh) = &mut tree else { unreachable!() };
-    for record in &mut bvh.records {
-        if record.triangle % 7 == 0 {
-            record.vertices = [0, 0, 0];
+    for triangle_ref in &mut bvh.triangle_refs {
+        if triangle_ref.triangle % 7 == 0 {
+            triangle_ref.vertices = [0, 0, 0];
         }
     }
     let cpu = CpuBackend::new(1).unwrap();

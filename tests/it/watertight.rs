@@ -6,12 +6,12 @@ use crate::support::{data, gpu, random};
 use crate::traversal::{all_names, assert_same, check_all, trace};
 use glam::Vec3;
 use proptest::prelude::*;
-use rtbench::accel::Selection;
-use rtbench::backend::{Backend, Config, GivenRay, Pixel, Size};
 use rtbench::camera::{Camera, CameraPath, View};
-use rtbench::cpu::CpuBackend;
 use rtbench::math::MISS;
 use rtbench::scene::{self, Scene};
+use rtbench::workloads::trace::CpuBackend;
+use rtbench::workloads::trace::Selection;
+use rtbench::workloads::trace::backend::{Backend, Config, GivenRay, Pixel, Size};
 
 /// Calls `check` with the twins, and with the Vulkan device if there is one.
 fn on_each_backend(check: impl Fn(&dyn Backend)) {
@@ -100,7 +100,7 @@ fn moller_and_trumbore_lose_rays() {
 }
 
 fn given(name: &str) -> Vec<GivenRay> {
-    rtbench::results::rays::read(&data(&format!("rays/{name}"))).unwrap()
+    rtbench::record::rays_csv::read(&data(&format!("rays/{name}"))).unwrap()
 }
 
 fn loaded(name: &str) -> Scene {

@@ -2,12 +2,13 @@
 
 use super::super::library::LibraryArguments;
 use super::super::output;
-use crate::accel::{Selection, estimate};
-use crate::backend::Config;
 use crate::camera::CameraPath;
 use crate::error::Result;
 use crate::scene::catalogue::{self, Class};
 use crate::scene::{Scene, load_in, placement};
+use crate::workloads::trace::Selection;
+use crate::workloads::trace::backend::Config;
+use crate::workloads::trace::common::estimate;
 
 /// Loads a scene and prints what it is like.
 pub fn run(what: &str, library: &LibraryArguments) -> Result<()> {
@@ -40,7 +41,7 @@ pub fn run(what: &str, library: &LibraryArguments) -> Result<()> {
     }
     line("camera of the file", camera(&scene));
     for config in Config::ALL {
-        line(&format!("camera path for {config:?}"), CameraPath::for_scene(&scene, config).name);
+        line(&format!("camera path for {config:?}"), CameraPath::for_scene(&scene, config.shadows()).name);
     }
     if let Some(entry) = entry {
         let class = match entry.class {

@@ -7,7 +7,7 @@ mod list;
 use super::library::LibraryArguments;
 use super::output;
 use crate::error::{Error, Result};
-use crate::results::files;
+use crate::record::files;
 use crate::scene::cache;
 use clap::Subcommand;
 use std::path::PathBuf;

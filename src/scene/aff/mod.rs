@@ -99,8 +99,8 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     let keys = match &options.camera {
         None => reader.keys.get(&b"camera"[..]),
         Some(name) => Some(reader.keys.get(name.as_bytes()).ok_or_else(|| {
-            let mend = "give the name of keyframes that the file has, or leave `camera=` out";
-            Error::file(path, None, format!("there are no keyframes `{name}`"), mend)
+            let hint = "give the name of keyframes that the file has, or leave `camera=` out";
+            Error::file(path, None, format!("there are no keyframes `{name}`"), hint)
         })?),
     };
     let (time, offset) = (time.unwrap_or(0.0), reader.mesh.offset());

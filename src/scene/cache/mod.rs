@@ -169,7 +169,7 @@ pub fn reseal(bytes: &mut [u8]) {
 /// # Errors
 /// [`Error::Input`]: no cache, or one that is stale, truncated or corrupt.
 pub fn read(path: &Path, options: &Options) -> Result<Scene> {
-    let fault = |problem: &str, mend: &str| Error::file(path, None, problem, mend);
+    let fault = |problem: &str, hint: &str| Error::file(path, None, problem, hint);
     let again = "make it again with `rtbench scenes convert`";
     let unreadable = |e: std::io::Error| match e.kind() {
         ErrorKind::NotFound => fault("no such file", "check the path"),
@@ -251,7 +251,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
         warnings: texts.warnings,
         placement,
     };
-    scene.complete(parts.extent).map_err(|(problem, mend)| fault(&problem, mend))?;
+    scene.complete(parts.extent).map_err(|(problem, hint)| fault(&problem, hint))?;
     if let Some(offset) = options.offset {
         scene.move_to(Placement { offset, exponent: 0 });
     }

@@ -88,15 +88,15 @@ impl<'a> Buffers<'a> {
 
 /// A data URI behind `data:`.
 fn decode(data: &str) -> Result<Vec<u8>, Fault> {
-    const MEND: &str = "buffers in URIs must be base64";
+    const HINT: &str = "buffers in URIs must be base64";
     let Some((_, text)) = data.split_once(";base64,") else {
-        return Err(("a buffer's data URI is not base64".into(), MEND));
+        return Err(("a buffer's data URI is not base64".into(), HINT));
     };
     // Padding is often forgotten.
     let config = GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent);
     GeneralPurpose::new(&base64::alphabet::STANDARD, config)
         .decode(text)
-        .map_err(|e| (format!("a buffer's data URI is broken: {e}"), MEND))
+        .map_err(|e| (format!("a buffer's data URI is broken: {e}"), HINT))
 }
 
 /// A file beside the scene: its name for messages, and where it is.

@@ -53,19 +53,19 @@ pub fn check(json: &[u8]) -> Result<(), Fault> {
         (digits && major == "2").then(|| minor.parse().unwrap_or(u32::MAX))
     };
     let shown = |text: &str| text.chars().filter(|c| !c.is_control()).take(20).collect::<String>();
-    const MEND: &str = "export it as glTF 2.0";
+    const HINT: &str = "export it as glTF 2.0";
     if minor(version).is_none() {
-        return Err((format!("this is glTF of version {}, only 2.0 is read", shown(version)), MEND));
+        return Err((format!("this is glTF of version {}, only 2.0 is read", shown(version)), HINT));
     }
     if let Some(least) = least.as_ref().filter(|least| minor(least).is_none_or(|minor| minor > MINOR)) {
-        return Err((format!("the file needs a reader of glTF {}, only 2.0 is read", shown(least)), MEND));
+        return Err((format!("the file needs a reader of glTF {}, only 2.0 is read", shown(least)), HINT));
     }
     let read = gltf::json::extensions::ENABLED_EXTENSIONS;
     match head.required.iter().find(|name| !read.contains(&name.as_str())) {
         Some(name) => {
             let name: String = name.chars().filter(|c| !c.is_control()).take(80).collect();
-            let mend = "take it out with gltf-transform (gltf-transform.dev), or export the file without it";
-            Err((format!("the file requires the extension {name}, which is not read"), mend))
+            let hint = "take it out with gltf-transform (gltf-transform.dev), or export the file without it";
+            Err((format!("the file requires the extension {name}, which is not read"), hint))
         }
         None => Ok(()),
     }

@@ -44,7 +44,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
 /// # Errors
 /// As [`read`].
 pub fn read_bytes(path: &Path, bytes: &[u8], options: &Options) -> Result<Scene> {
-    let at = |(problem, mend): Fault| Error::file(path, None, problem, mend);
+    let at = |(problem, hint): Fault| Error::file(path, None, problem, hint);
     head::check_container(bytes).map_err(at)?;
     let json = if bytes.starts_with(b"glTF") { json_chunk(bytes) } else { bytes };
     let mut limits = Limits::default();

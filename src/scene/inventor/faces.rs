@@ -197,11 +197,11 @@ impl<'t> Faces<'t> {
 
     #[cold]
     fn out_of_range(&self, index: f64) -> Fault {
-        let mend = match self.coordinates.len() {
+        let hint = match self.coordinates.len() {
             0 => "there are no coordinates".into(),
             count => format!("give 0 to {}", count - 1),
         };
-        Fault::new(Some(self.line), format!("coordIndex: index {index} is out of range"), mend)
+        Fault::new(Some(self.line), format!("coordIndex: index {index} is out of range"), hint)
     }
 
     #[cold]

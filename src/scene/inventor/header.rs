@@ -14,7 +14,7 @@ pub struct Dialect {
 /// # Errors
 /// It is one that this reader does not know, with what to do about it.
 pub fn dialect(bytes: &[u8]) -> Result<Dialect, Fault> {
-    let fault = |problem: &str, mend: &str| Err(Fault::new(Some(1), problem, mend));
+    let fault = |problem: &str, hint: &str| Err(Fault::new(Some(1), problem, hint));
     if bytes.starts_with(&[0x1f, 0x8b]) {
         return fault("the file is compressed", "gunzip it first");
     }
@@ -57,7 +57,7 @@ mod tests {
         ] {
             assert_eq!(dialect(header.as_bytes()), Ok(Dialect { crease_angle: crease }), "{header}");
         }
-        for (header, mend) in [
+        for (header, hint) in [
             ("#Inventor V2.1 binary\n", "ivcat"),
             ("#Inventor V2.0 binary  ", "ivcat"),
             ("#Inventor V1.0 ascii", "ivcat"),
@@ -67,8 +67,8 @@ mod tests {
             ("", "first line"),
         ] {
             let fault = dialect(header.as_bytes()).expect_err(header);
-            assert!(fault.line == Some(1) && fault.mend.contains(mend), "{header}: {fault:?}");
+            assert!(fault.line == Some(1) && fault.hint.contains(hint), "{header}: {fault:?}");
         }
-        assert_eq!(dialect(&[0x1f, 0x8b, 8, 0]).unwrap_err().mend, "gunzip it first");
+        assert_eq!(dialect(&[0x1f, 0x8b, 8, 0]).unwrap_err().hint, "gunzip it first");
     }
 }

@@ -84,8 +84,8 @@ impl<T: Clone + Default> Contexts<T> {
                 self.start(place, value);
             }
             _ => {
-                let mend = "write nothing, a name, `name =` or `name = template`";
-                return Err(Fault::new(None, "this selects no context", mend));
+                let hint = "write nothing, a name, `name =` or `name = template`";
+                return Err(Fault::new(None, "this selects no context", hint));
             }
         }
         Ok(())

@@ -59,8 +59,8 @@ impl Reader {
                 // Negative radii turn it inside out
                 let (inner, outer) = (number_of(inner)?, number_of(outer)?);
                 if !(0.0 <= inner && inner < outer || outer < inner && inner <= 0.0) {
-                    let mend = "put the inner one first; both are negative where the normals point inward";
-                    return Err(Fault::new(None, "the radii are not 0 <= inner < outer", mend));
+                    let hint = "put the inner one first; both are negative where the normals point inward";
+                    return Err(Fault::new(None, "the radii are not 0 <= inner < outer", hint));
                 }
                 self.mesh.torus(
                     position,

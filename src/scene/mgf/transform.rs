@@ -62,8 +62,8 @@ impl Places {
                     continue;
                 }
                 other => {
-                    let mend = "-t, -rx, -ry, -rz, -s, -mx, -my, -mz, -i and -a";
-                    return Err(Fault::new(None, format!("{} is no part of a transform", quote_bytes(other)), mend));
+                    let hint = "-t, -rx, -ry, -rz, -s, -mx, -my, -mz, -i and -a";
+                    return Err(Fault::new(None, format!("{} is no part of a transform", quote_bytes(other)), hint));
                 }
             };
             stretch.transform = step * stretch.transform;

@@ -191,8 +191,8 @@ impl Faces {
             + self.triangles.len() * PER_TRIANGLE
             + self.shining * lamps::BYTES
             + self.corners.len() * PER_CORNER;
-        let mend = "it has many faces of few vertices: store them another way, as in a binary PLY";
-        self.limits.passing(bytes).map_err(|fault| Fault::new(line, fault.problem, mend))
+        let hint = "it has many faces of few vertices: store them another way, as in a binary PLY";
+        self.limits.passing(bytes).map_err(|fault| Fault::new(line, fault.problem, hint))
     }
 
     /// The vertex of that key, a new one if there is none yet.

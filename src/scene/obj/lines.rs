@@ -180,12 +180,12 @@ impl<'a> Lines<'a> {
 
     #[cold]
     fn too_far(&self, v: Vec3) -> Fault {
-        let (what, mend) = match v.is_finite() {
+        let (what, hint) = match v.is_finite() {
             true => ("lie beyond 1e18", "scale the mesh down, or remove the vertex"),
             false => ("are not finite", "remove it or repair the export"),
         };
         let problem = format!("a vertex has the values ({}, {}, {}), which {what}", v.x, v.y, v.z);
-        Fault::new(self.line, problem, mend)
+        Fault::new(self.line, problem, hint)
     }
 
     /// Three numbers; what is not finite is zero and computed later.

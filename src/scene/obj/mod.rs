@@ -39,16 +39,16 @@ const NAMES: usize = 16;
 pub(crate) struct Fault {
     line: usize,
     problem: String,
-    mend: &'static str,
+    hint: &'static str,
 }
 
 impl Fault {
-    fn new(line: usize, problem: impl Into<String>, mend: &'static str) -> Fault {
-        Fault { line, problem: problem.into(), mend }
+    fn new(line: usize, problem: impl Into<String>, hint: &'static str) -> Fault {
+        Fault { line, problem: problem.into(), hint }
     }
 
     fn of(self, path: &Path) -> Error {
-        Error::file(path, Some(self.line), self.problem, self.mend)
+        Error::file(path, Some(self.line), self.problem, self.hint)
     }
 }
 

@@ -126,7 +126,7 @@ fn too_many(line: Option<usize>, count: u64, name: &str) -> Fault {
 fn explain<S: Source>(bad: Bad, source: &S, element: &Element, row: u64) -> Fault {
     let token = String::from_utf8_lossy(source.token()).into_owned();
     let place = format!("{} {row}", element.name);
-    let (problem, mend) = match bad {
+    let (problem, hint) = match bad {
         Bad::End => (
             format!("the file ends within {place} of {}", element.count),
             "the file is truncated: fetch it again".to_owned(),
@@ -137,7 +137,7 @@ fn explain<S: Source>(bad: Bad, source: &S, element: &Element, row: u64) -> Faul
         Bad::Integer => (format!("{place}: {} is not a whole number", quote(&token)), one_row()),
         Bad::Count => (format!("{place} has a list with a negative number of items"), one_row()),
     };
-    Fault::new(source.line(), problem, mend)
+    Fault::new(source.line(), problem, hint)
 }
 
 fn one_row() -> String {
@@ -176,14 +176,14 @@ const MOST: Vec3 = Vec3::splat(MAX_COORDINATE as f32);
 
 #[cold]
 fn too_far(line: Option<usize>, row: u64, position: Vec3) -> Fault {
-    let (what, mend) = match position.is_finite() {
+    let (what, hint) = match position.is_finite() {
         true => ("beyond 1e18", "scale the mesh down, or remove the vertex"),
         false => {
             ("not finite", "coordinates must be finite in single precision: remove the vertex or repair the export")
         }
     };
     let Vec3 { x, y, z } = position;
-    Fault::new(line, format!("vertex {row} lies at ({x}, {y}, {z}), which is {what}"), mend)
+    Fault::new(line, format!("vertex {row} lies at ({x}, {y}, {z}), which is {what}"), hint)
 }
 
 /// A vertex whose position is counted from a point, and rounded then. The normal is still read in single precision.

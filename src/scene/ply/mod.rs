@@ -79,12 +79,12 @@ fn vertex_element(header: &Header) -> Result<&Element, Fault> {
 /// The face element and the index of its list.
 fn face_element(header: &Header) -> Result<(&Element, usize), Fault> {
     let no_faces = |line| {
-        let mend = if header.element("tristrips").is_some() {
+        let hint = if header.element("tristrips").is_some() {
             "it holds triangle strips: convert them to faces, for instance with MeshLab"
         } else {
             "store it with an `element face` that lists vertex indices"
         };
-        Fault::new(line, "no faces: a point cloud cannot be ray traced", mend)
+        Fault::new(line, "no faces: a point cloud cannot be ray traced", hint)
     };
     let face = header.element("face").ok_or_else(|| no_faces(None))?;
     if face.count == 0 {

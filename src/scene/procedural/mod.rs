@@ -80,8 +80,8 @@ pub(super) fn build(what: &str) -> Result<Scene> {
     let (name, settings) = what.split_once(':').unwrap_or((what, ""));
     let Some(info) = SCENES.iter().find(|info| info.name == name) else {
         let known: Vec<&str> = SCENES.iter().map(|info| info.name).collect();
-        let mend = format!("{}; or name a file such as mesh.ply", did_you_mean(name, &known));
-        return Err(Error::argument(what, format!("no file and no built-in scene is called `{name}`"), mend));
+        let hint = format!("{}; or name a file such as mesh.ply", did_you_mean(name, &known));
+        return Err(Error::argument(what, format!("no file and no built-in scene is called `{name}`"), hint));
     };
     let mut values: Vec<u64> = info.parameters.iter().map(|p| p.default).collect();
     for setting in settings.split(',').filter(|s| !s.is_empty()) {

@@ -80,8 +80,8 @@ impl Includes {
     /// # Errors
     /// It may not be included, or cannot be read.
     pub fn open(&mut self, including: &Path, name: &[u8]) -> Result<(PathBuf, Rc<Vec<u8>>), Fault> {
-        let fault = |problem: &str, mend: String| {
-            Err(Fault::new(None, format!("include {}: {problem}", quote_bytes(name)), mend))
+        let fault = |problem: &str, hint: String| {
+            Err(Fault::new(None, format!("include {}: {problem}", quote_bytes(name)), hint))
         };
         if self.open.is_empty() {
             self.locate();

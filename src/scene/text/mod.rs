@@ -19,13 +19,13 @@ pub struct Fault {
     /// What is wrong.
     pub problem: String,
     /// What to do about it; may be empty.
-    pub mend: String,
+    pub hint: String,
 }
 
 impl Fault {
     /// A fault.
-    pub fn new(line: Option<usize>, problem: impl Into<String>, mend: impl Into<String>) -> Fault {
-        Fault { line, problem: problem.into(), mend: mend.into() }
+    pub fn new(line: Option<usize>, problem: impl Into<String>, hint: impl Into<String>) -> Fault {
+        Fault { line, problem: problem.into(), hint: hint.into() }
     }
 
     /// With this line, if it has none of its own.
@@ -35,7 +35,7 @@ impl Fault {
 
     /// The error for the user.
     pub fn of(self, path: &Path) -> Error {
-        Error::file(path, self.line, self.problem, self.mend)
+        Error::file(path, self.line, self.problem, self.hint)
     }
 }
 

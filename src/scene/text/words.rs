@@ -107,8 +107,8 @@ impl<'a> Words<'a> {
 
     /// A fault in the line of the word that was read last.
     #[cold]
-    pub fn fault(&self, problem: impl Into<String>, mend: impl Into<String>) -> Fault {
-        Fault::new(Some(self.line), problem, mend)
+    pub fn fault(&self, problem: impl Into<String>, hint: impl Into<String>) -> Fault {
+        Fault::new(Some(self.line), problem, hint)
     }
 
     /// Counts the line that ends with the byte at `at`.
@@ -367,8 +367,8 @@ impl<'a> Words<'a> {
         match usize::try_from(index) {
             Ok(index) if index < count => Ok(index),
             _ => {
-                let mend = if count == 0 { "there are none".into() } else { format!("give 0 to {}", count - 1) };
-                Err(self.fault(format!("{what}: index {index} is out of range"), mend))
+                let hint = if count == 0 { "there are none".into() } else { format!("give 0 to {}", count - 1) };
+                Err(self.fault(format!("{what}: index {index} is out of range"), hint))
             }
         }
     }

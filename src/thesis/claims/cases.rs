@@ -2,13 +2,13 @@
 
 use super::Case;
 use super::compare::{Outcome, Uncertain, all, less};
-use crate::backend::Config;
 use crate::thesis::builds::BuiltBy;
 use crate::thesis::data::{Built, Data, Frame, STRUCTURES};
 use crate::thesis::number::Number;
 use crate::thesis::scenes::SceneKey;
 use crate::thesis::table::Form;
 use crate::thesis::variant::Variant;
+use crate::workloads::trace::backend::Config;
 
 /// Crowding of the fullest cell from which on a scene is not uniform: the thesis's three single objects have 1.5 to 2.7,
 /// its walk-through scenes 15 to 180 (table 5.4).

@@ -1,10 +1,10 @@
 //! The claims, in the order of SPEC section 10.
 
 use super::{Basis, Case, cases, occupancy, options, resolution};
-use crate::backend::Config;
 use crate::thesis::data::{Data, Failure, STRUCTURES};
 use crate::thesis::scenes::SceneKey;
 use crate::thesis::variant::Variant;
+use crate::workloads::trace::backend::Config;
 
 /// A claim: its words, and how to find its cases.
 pub struct Claim {

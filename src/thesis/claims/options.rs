@@ -3,9 +3,9 @@
 use super::Case;
 use super::cases::{changed, is_shiny, ms};
 use super::compare::{Uncertain, less, less_by};
-use crate::backend::{Config, RAY_TYPES};
 use crate::thesis::data::{Counts, Data, STRUCTURES, adding};
 use crate::thesis::variant::Variant;
+use crate::workloads::trace::backend::{Config, RAY_TYPES};
 
 /// "More than doubles".
 const DOUBLE: f64 = 2.0;

@@ -4,10 +4,10 @@ use super::Case;
 use super::cases::is_uniform;
 use super::compare::{Outcome, Uncertain, less_by, not};
 use super::options::work;
-use crate::backend::Config;
 use crate::thesis::data::Data;
 use crate::thesis::scenes::{SceneKey, ThesisScene};
 use crate::thesis::sweeps::{Point, grid_sweep};
+use crate::workloads::trace::backend::Config;
 
 /// At most this many times the best: near it.
 pub const NEAR: f64 = 1.15;

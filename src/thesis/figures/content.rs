@@ -3,13 +3,13 @@
 use super::axis::{Axis, spreads};
 use super::draw::{Bar, Panel, Picture, Series};
 use super::theme;
-use crate::backend::Config;
 use crate::thesis::data::{Data, Frame, STRUCTURES, structure_title};
 use crate::thesis::published::{GT8600, GTX280};
 use crate::thesis::scenes::SceneKey;
 use crate::thesis::sweeps::{grid_sweep, resolution_sweep};
 use crate::thesis::tables::side::representative;
 use crate::thesis::variant::Variant;
+use crate::workloads::trace::backend::Config;
 
 /// Suffix of the file's name, caption, picture.
 type Drawn = (String, String, Picture);

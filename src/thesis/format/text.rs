@@ -1,6 +1,6 @@
 //! Tables for a terminal.
 
-use crate::results::table::STYLE;
+use crate::record::table::STYLE;
 use crate::thesis::table::{Cell, Table};
 use comfy_table::{CellAlignment, ColumnConstraint, Width};
 

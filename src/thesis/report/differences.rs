@@ -1,7 +1,7 @@
 //! What is not as it was in 2009 (SPEC section 12), and what that means for the numbers.
 
 use super::html::escape;
-use crate::results::record::Status;
+use crate::record::schema::Status;
 use crate::thesis::builds::threads_in_words;
 use crate::thesis::data::{Data, structure_title};
 use crate::thesis::runs::RecordedRun;

@@ -2,7 +2,7 @@
 
 use super::html::escape;
 use crate::error::{Error, Result};
-use crate::results::picture::{FOLDER, STEPS};
+use crate::record::picture::{FOLDER, STEPS};
 use crate::thesis::runs::RecordedRun;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

@@ -1,7 +1,7 @@
 //! Where the numbers come from.
 
 use super::html::{entry, escape};
-use crate::results::table::device_in_words;
+use crate::record::table::device_in_words;
 use crate::thesis::runs::RecordedRun;
 
 /// A list per run.
@@ -33,7 +33,7 @@ fn one(run: &RecordedRun) -> String {
     let packages: Vec<String> = p.program.packages.iter().map(|(name, version)| format!("{name} {version}")).collect();
     let (rows, errors) = (
         run.journal.configurations.len(),
-        run.journal.configurations.iter().filter(|c| c.status == crate::results::record::Status::Error).count(),
+        run.journal.configurations.iter().filter(|c| c.status == crate::record::schema::Status::Error).count(),
     );
     let entries = [
         ("device", device_in_words(&p.device)),

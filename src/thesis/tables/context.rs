@@ -1,11 +1,11 @@
 //! What all tables share: their rows, cells beside the published ones, and the lines that explain what is missing.
 
 use super::{Options, Rows};
-use crate::backend::Config;
 use crate::thesis::data::Data;
 use crate::thesis::number::Number;
 use crate::thesis::scenes::{SceneKey, ThesisScene};
 use crate::thesis::table::{Cell, Column, Row, Table};
+use crate::workloads::trace::backend::Config;
 
 /// Most failed measurements that a note spells out.
 const MAX_SPELT_OUT: usize = 4;

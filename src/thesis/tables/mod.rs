@@ -67,8 +67,8 @@ pub fn select(list: &str) -> Result<Vec<&'static str>> {
     let ids: Vec<&str> = named
         .map(|wanted| {
             IDS.into_iter().find(|id| id.eq_ignore_ascii_case(wanted)).ok_or_else(|| {
-                let mend = format!("all, or a list of {}", IDS.join(", "));
-                Error::argument("--table", format!("there is no table '{wanted}'"), mend)
+                let hint = format!("all, or a list of {}", IDS.join(", "));
+                Error::argument("--table", format!("there is no table '{wanted}'"), hint)
             })
         })
         .collect::<Result<_>>()?;

@@ -5,12 +5,12 @@
 
 use super::Rows;
 use super::context::Context;
-use crate::backend::Config;
 use crate::thesis::data::{Data, Frame, RegisterLimit, STRUCTURES, structure_title};
 use crate::thesis::published::{GT8600, GTX280};
 use crate::thesis::scenes::SceneKey;
 use crate::thesis::table::{Cell, Column, Form, Row, Table};
 use crate::thesis::variant::Variant;
+use crate::workloads::trace::backend::Config;
 
 /// True for an option that changes how many threads a processor holds, and nothing that is computed.
 pub fn is_stand_in(key: &str, value: &str) -> bool {

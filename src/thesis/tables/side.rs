@@ -1,9 +1,9 @@
 //! Which image size stands for all, where a table or a figure has room for one.
 
-use crate::backend::Config;
 use crate::thesis::data::{Data, Frame};
 use crate::thesis::scenes::SceneKey;
 use crate::thesis::variant::Variant;
+use crate::workloads::trace::backend::Config;
 
 /// Sides of the thesis's images, from the largest: only these have published numbers to stand beside.
 const PUBLISHED: [u32; 4] = [1024, 768, 512, 256];

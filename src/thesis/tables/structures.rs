@@ -1,12 +1,12 @@
 //! Tables 5.1 and 5.3 to 5.6: what does not depend on the device.
 
 use super::context::{Context, repeated};
-use crate::accel::Properties;
 use crate::scene::catalogue;
 use crate::thesis::builds::BuiltBy;
 use crate::thesis::data::{Built, Data, STRUCTURES, structure_title};
 use crate::thesis::scenes::SceneKey;
 use crate::thesis::table::{Cell, Column, Form, Row, Table};
+use crate::workloads::trace::Properties;
 
 /// A column of table 5.4, 5.5 or 5.6: heading, unit, form, and where its number stands.
 type PropertyColumn = (&'static str, &'static str, Form, fn(&Built) -> Option<f64>);

@@ -1,11 +1,11 @@
 //! Tables 5.12 to 5.14 and B.1 to B.6: frame times.
 
 use super::context::{Context, repeated};
-use crate::backend::Config;
 use crate::thesis::data::{Data, STRUCTURES, structure_title};
 use crate::thesis::published::{GT8600, GTX280};
 use crate::thesis::scenes::SceneKey;
 use crate::thesis::table::{Cell, Column, Form, Row, Table};
+use crate::workloads::trace::backend::Config;
 
 /// Configurations of the tables of one device, in their order: 5.12 to 5.14, B.1 to B.3, B.4 to B.6.
 pub const CARD_CONFIGS: [(Config, &str); 3] =

@@ -1,11 +1,11 @@
 //! Validation notices every kind of damage: each check of it is fed something wrong here.
 
 use super::{build, scenes};
-use rtbench::accel::bvh::{Bvh, BvhNode};
-use rtbench::accel::grid::Grid;
-use rtbench::accel::kdtree::{KdNode, KdTree};
-use rtbench::accel::{Brute, Structure};
 use rtbench::scene::Scene;
+use rtbench::workloads::trace::bvh::{Bvh, BvhNode};
+use rtbench::workloads::trace::grid::Grid;
+use rtbench::workloads::trace::kdtree::{KdNode, KdTree};
+use rtbench::workloads::trace::{Brute, Structure};
 
 fn scene() -> Scene {
     scenes::random("good", 400, 1.0, 0.1, 9)
@@ -54,17 +54,17 @@ fn in_a_bvh() {
             b.nodes[leaf].max = [6.0; 3];
         }),
         ("wrong bounds", "bounds", &|b| b.bounds.max.x += 1.0),
-        ("dropped last record", "behind the last record", &|b| {
-            b.records.pop();
+        ("dropped last triangle reference", "behind the last triangle reference", &|b| {
+            b.triangle_refs.pop();
         }),
-        ("one record too many", "in leaves", &|b| b.records.push(b.records[0])),
-        ("lost triangle", "", &|b| b.records[1] = b.records[0]),
-        ("swapped records", "outside its leaf", &|b| {
+        ("one triangle reference too many", "in leaves", &|b| b.triangle_refs.push(b.triangle_refs[0])),
+        ("lost triangle", "", &|b| b.triangle_refs[1] = b.triangle_refs[0]),
+        ("swapped triangle references", "outside its leaf", &|b| {
             let (i, j) = (b.nodes[leaf].first as usize, b.nodes[other].first as usize);
-            b.records.swap(i, j);
+            b.triangle_refs.swap(i, j);
         }),
-        ("wrong vertices", "has vertices", &|b| b.records[3].vertices.swap(0, 1)),
-        ("triangle out of range", "does not exist", &|b| b.records[3].triangle = 1 << 30),
+        ("wrong vertices", "has vertices", &|b| b.triangle_refs[3].vertices.swap(0, 1)),
+        ("triangle out of range", "does not exist", &|b| b.triangle_refs[3].triangle = 1 << 30),
         ("odd link", "the children of node", &|b| b.nodes[inner].first += 1),
         ("link out of range", "behind the last node", &|b| b.nodes[inner].first = b.nodes.len() as u32),
         ("link to the root", "begin at 0", &|b| b.nodes[inner].first = 0),
@@ -113,19 +113,20 @@ fn in_a_kdtree() {
         ("inner node at the end", "behind the last node", &|t| {
             *t.nodes.last_mut().unwrap() = KdNode::inner(0, 0.5, 1);
         }),
-        ("lost record", "", &|t| {
-            t.records.remove(first);
+        ("lost triangle reference", "", &|t| {
+            t.triangle_refs.remove(first);
         }),
-        ("doubled record", "instead of", &|t| t.records[first] = t.records[first + 1]),
-        ("record of another triangle", "instead of", &|t| {
-            let stranger = *t.records.iter().find(|r| t.records[first..first + 2].iter().all(|o| o != *r)).unwrap();
-            t.records[first] = stranger;
+        ("doubled triangle reference", "instead of", &|t| t.triangle_refs[first] = t.triangle_refs[first + 1]),
+        ("triangle reference of another triangle", "instead of", &|t| {
+            let stranger =
+                *t.triangle_refs.iter().find(|r| t.triangle_refs[first..first + 2].iter().all(|o| o != *r)).unwrap();
+            t.triangle_refs[first] = stranger;
         }),
-        ("record too many", "in leaves", &|t| t.records.push(t.records[0])),
+        ("triangle reference too many", "in leaves", &|t| t.triangle_refs.push(t.triangle_refs[0])),
         ("leaf begins too late", "not at", &|t| t.nodes[leaf].word += 1),
         ("leaf too long", "", &|t| t.nodes[leaf].link += 4),
-        ("wrong vertices", "has vertices", &|t| t.records[3].vertices.swap(1, 2)),
-        ("triangle out of range", "does not exist", &|t| t.records[3].triangle = u32::MAX),
+        ("wrong vertices", "has vertices", &|t| t.triangle_refs[3].vertices.swap(1, 2)),
+        ("triangle out of range", "does not exist", &|t| t.triangle_refs[3].triangle = u32::MAX),
         ("wrong depth", "depth is", &|t| t.depth -= 1),
         ("wrong bounds", "bounds", &|t| t.bounds.min.y -= 1.0),
     ];
@@ -152,23 +153,23 @@ fn in_a_grid() {
         ("cell begins too late", "begins at", &|g| g.cells[full].first += 1),
         ("cell too long", "", &|g| g.cells[full].count += 1),
         ("cell far too long", "behind the last", &|g| g.cells[full].count = u32::MAX),
-        ("record too many", "in cells", &|g| g.records.push(g.records[0])),
-        ("not ascending", "ascending", &|g| g.records.swap(first, first + 1)),
-        ("doubled record", "ascending", &|g| g.records[first] = g.records[first + 1]),
-        ("record in another cell", "", &|g| {
-            // Moves the border between two neighbouring cells: all in order, but one record is in the wrong cell.
+        ("triangle reference too many", "in cells", &|g| g.triangle_refs.push(g.triangle_refs[0])),
+        ("not ascending", "ascending", &|g| g.triangle_refs.swap(first, first + 1)),
+        ("doubled triangle reference", "ascending", &|g| g.triangle_refs[first] = g.triangle_refs[first + 1]),
+        ("triangle reference in another cell", "", &|g| {
+            // Moves the border between two neighbouring cells: all in order, but one triangle reference is in the wrong cell.
             let next = (full + 1..g.cells.len()).find(|&c| c != full).unwrap();
             g.cells[full].count -= 1;
             g.cells[next].first -= 1;
             g.cells[next].count += 1;
         }),
-        ("record in a cell that it does not overlap", "does not overlap", &|g| {
-            let stranger = g.records[if empty < full { first } else { 0 }];
-            g.records.insert(g.cells[empty].first as usize, stranger);
+        ("triangle reference in a cell that it does not overlap", "does not overlap", &|g| {
+            let stranger = g.triangle_refs[if empty < full { first } else { 0 }];
+            g.triangle_refs.insert(g.cells[empty].first as usize, stranger);
             g.cells[empty].count += 1;
             g.cells[empty + 1..].iter_mut().for_each(|c| c.first += 1);
         }),
-        ("wrong vertices", "has vertices", &|g| g.records[3].vertices.swap(1, 2)),
+        ("wrong vertices", "has vertices", &|g| g.triangle_refs[3].vertices.swap(1, 2)),
         ("wrong bounds", "bounds", &|g| g.bounds.max.z += 1.0),
     ];
     assert_noticed(&good, Structure::Grid, damages);
@@ -179,10 +180,10 @@ fn in_a_list() {
     let Structure::Brute(good) = build("brute", &scene(), 1) else { unreachable!() };
     let damages: &[Damage<Brute>] = &[
         ("lost", "not all", &|b| {
-            b.records.pop();
+            b.triangle_refs.pop();
         }),
-        ("swapped", "not all", &|b| b.records.swap(4, 5)),
-        ("doubled", "not all", &|b| b.records.push(b.records[0])),
+        ("swapped", "not all", &|b| b.triangle_refs.swap(4, 5)),
+        ("doubled", "not all", &|b| b.triangle_refs.push(b.triangle_refs[0])),
         ("wrong bounds", "bounds", &|b| b.bounds.max.z = f32::NAN),
     ];
     assert_noticed(&good, Structure::Brute, damages);

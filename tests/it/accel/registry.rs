@@ -2,8 +2,8 @@
 
 use super::{SELECTIONS, scenes};
 use rtbench::Error;
-use rtbench::accel::method::{Group, KdSearch, Vote};
-use rtbench::accel::{Selection, Traversal, variants};
+use rtbench::workloads::trace::method::{Group, KdSearch, Vote};
+use rtbench::workloads::trace::{Selection, Traversal, variants};
 
 fn selection(text: &str) -> Selection {
     Selection::parse(text).unwrap()
@@ -84,12 +84,12 @@ fn what_it_does_not_know_it_names_with_what_there_is() {
         ("kdtree:max_depth=61", "'61'", "0 to 60"),
         ("ploc-stack:preset=best", "'best'", "fastest, very-fast, fast, medium, slow, very-slow"),
     ];
-    for (text, problem, mend) in cases {
+    for (text, problem, hint) in cases {
         let error = Selection::parse(text).expect_err(text);
         assert!(matches!(error, Error::Input(_)) && error.exit_code() == 2);
         let line = error.to_string();
         assert!(!line.contains('\n'), "{line}");
-        for words in [problem, mend, "--structure"] {
+        for words in [problem, hint, "--structure"] {
             assert!(line.contains(words), "'{line}' does not say '{words}'");
         }
     }
@@ -110,11 +110,11 @@ fn a_grid_that_takes_too_much_is_refused() {
     let cells = selection("grid:x=100000").build(&scene, 1).unwrap_err().to_string();
     assert!(cells.contains("cells, more than") && cells.contains("set fewer"), "{cells}");
     let heap = scenes::soup("heap", [[glam::Vec3::ZERO, glam::Vec3::ONE, glam::Vec3::X]; 3000]);
-    let records = selection("grid:x=100").build(&heap, 1).unwrap_err().to_string();
-    assert!(records.contains("records, more than"), "{records}");
+    let triangle_refs = selection("grid:x=100").build(&heap, 1).unwrap_err().to_string();
+    assert!(triangle_refs.contains("triangle references, more than"), "{triangle_refs}");
     // The rule's own grid gives way instead.
     let built = selection("grid").build(&heap, 1).unwrap().structure;
-    assert!(built.records().len() <= 256 * 3000);
+    assert!(built.triangle_refs().len() <= 256 * 3000);
 }
 
 #[test]

@@ -189,27 +189,29 @@ fn the_rows_without_a_thinnest_slice() {
 /// The memory model itself, from the published counts alone: no model is needed.
 #[test]
 fn the_memory_model_gives_the_published_sizes() {
-    use rtbench::accel::bvh::{Bvh, BvhNode};
-    use rtbench::accel::grid::{Cell, Grid};
-    use rtbench::accel::kdtree::{KdNode, KdTree};
-    use rtbench::accel::{Record, Structure};
     use rtbench::math::{Aabb, Vertex};
+    use rtbench::workloads::trace::bvh::{Bvh, BvhNode};
+    use rtbench::workloads::trace::grid::{Cell, Grid};
+    use rtbench::workloads::trace::kdtree::{KdNode, KdTree};
+    use rtbench::workloads::trace::{Structure, TriangleRef};
 
     let bounds = Aabb::EMPTY;
     for (published, triangles, vertices) in [(BUNNY, 69_451.0, 35_947), (DRAGON, 871_414.0, 437_645)] {
         let scene = Scene { vertices: vec![Vertex::default(); vertices], ..Scene::default() };
-        let records =
-            |per_triangle: f64| vec![Record { vertices: [0; 3], triangle: 0 }; (per_triangle * triangles) as usize];
+        let triangle_refs = |per_triangle: f64| {
+            vec![TriangleRef { vertices: [0; 3], triangle: 0 }; (per_triangle * triangles) as usize]
+        };
         let size = |structure: Structure| mib(structure.thesis_bytes(&scene));
         let cells = vec![Cell::default(); published.grid.iter().product::<u32>() as usize];
         let resolution = published.grid;
-        let grid = Grid { bounds, resolution, cell_size: 1.0, cells, records: records(published.grid_references) };
+        let grid =
+            Grid { bounds, resolution, cell_size: 1.0, cells, triangle_refs: triangle_refs(published.grid_references) };
         assert!((size(Structure::Grid(grid)) - published.grid_mib).abs() < 0.03);
         let nodes = vec![KdNode::leaf(0, 0); 2 * published.kd_leaves as usize - 1];
-        let tree = KdTree { bounds, nodes, records: records(published.kd_references), depth: 0 };
+        let tree = KdTree { bounds, nodes, triangle_refs: triangle_refs(published.kd_references), depth: 0 };
         assert!((size(Structure::KdTree(tree)) - published.kd_mib).abs() < 0.08);
         let nodes = vec![BvhNode::NONE; published.bvh_nodes as usize];
-        let bvh = Bvh { bounds, nodes, records: Vec::new(), depth: 0 };
+        let bvh = Bvh { bounds, nodes, triangle_refs: Vec::new(), depth: 0 };
         assert!((size(Structure::Bvh(bvh)) - published.bvh_mib).abs() < 0.011);
     }
 }

@@ -2,8 +2,8 @@
 
 use super::{Files, real_scenes};
 use glam::Vec3;
-use rtbench::accel::Selection;
 use rtbench::scene::{self, Pose, Scene};
+use rtbench::workloads::trace::Selection;
 
 /// Loads a file of this text.
 fn aff(text: &str) -> Scene {

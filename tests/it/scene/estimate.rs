@@ -1,10 +1,12 @@
 //! What `rtbench scenes info` says of a structure's memory before it is built.
 
 use glam::Vec3;
-use rtbench::accel::grid::Grid;
-use rtbench::accel::{Selection, estimate, grid_build};
 use rtbench::math::Vertex;
 use rtbench::scene::{Material, Scene, Triangle, load_in};
+use rtbench::workloads::trace::Selection;
+use rtbench::workloads::trace::common::estimate;
+use rtbench::workloads::trace::grid;
+use rtbench::workloads::trace::grid::Grid;
 
 /// A square of so many cells along each edge, as high as it says.
 fn field(cells: u32, height: f32) -> Scene {
@@ -30,9 +32,9 @@ fn field(cells: u32, height: f32) -> Scene {
 fn the_grid_is_estimated_with_the_builders_limits() {
     for (cells, height) in [(100, 100.0), (100, 1.0), (100, 0.01), (20, 0.0)] {
         let scene = field(cells, height);
-        let config = grid_build::Config::default();
-        let grid: Grid = grid_build::build(&scene, &config).unwrap();
-        let built = (size_of_val(grid.cells.as_slice()) + size_of_val(grid.records.as_slice())) as f64;
+        let config = grid::build::Config::default();
+        let grid: Grid = grid::build::build(&scene, &config).unwrap();
+        let built = (size_of_val(grid.cells.as_slice()) + size_of_val(grid.triangle_refs.as_slice())) as f64;
         let estimate = estimate::estimates(&scene, &config).unwrap()[0];
         let off = estimate.structure_bytes as f64 / built;
         assert!((1.0 / estimate.factor..estimate.factor).contains(&off), "height {height}: {off} of {built}");

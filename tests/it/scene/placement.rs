@@ -6,17 +6,17 @@ use crate::support::{gpu, random, soup};
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use rtbench::Error;
-use rtbench::accel::Selection;
-use rtbench::backend::{Backend, Config, GivenRay, Pixel, Prepared, Size, surface_epsilon};
-use rtbench::bench::plan::scene_record;
 use rtbench::camera::{CameraPath, View};
-use rtbench::cpu::CpuBackend;
+use rtbench::harness::plan::scene_record;
 use rtbench::math::{Aabb, Hit, MISS};
-use rtbench::results::rays::ExactRay;
-use rtbench::results::record::SceneRecord;
+use rtbench::record::rays_csv::ExactRay;
+use rtbench::record::schema::SceneRecord;
 use rtbench::scene::cache::{self, Sources};
 use rtbench::scene::placement::power_of_two;
 use rtbench::scene::{self, Placement, Scene};
+use rtbench::workloads::trace::CpuBackend;
+use rtbench::workloads::trace::Selection;
+use rtbench::workloads::trace::backend::{Backend, Config, GivenRay, Pixel, Prepared, Size, surface_epsilon};
 use serde_json::json;
 use std::fmt::Write;
 use std::path::Path;
@@ -452,7 +452,8 @@ fn cameras_and_lights_move_along() {
     // What is made of sines differs by what doubles round there
     let pairs = || far.vertices.iter().zip(&near.vertices);
     assert!(pairs().all(|(a, b)| a.position.abs_diff_eq(b.position, 1e-7) && a.normal == b.normal));
-    let view = |scene: &Scene| CameraPath::for_scene(scene, Config::PS).views(scene, None).unwrap()[0].clone();
+    let view =
+        |scene: &Scene| CameraPath::for_scene(scene, Config::PS.shadows()).views(scene, None).unwrap()[0].clone();
     let [a, b] = [&far, &near].map(|scene| picture_of(scene, &view(scene), 48));
     // The camera's own digits are not exact in either place
     assert!(differing(&a, &b, 8) <= 4);
@@ -499,7 +500,7 @@ fn exported_cameras_are_in_the_file_s_coordinates_and_lead_back() {
     let scene = files.load("far.nff").unwrap();
     for own in ["orbit", "inside", "far"] {
         let path = match own {
-            "far" => CameraPath::for_scene(&scene, Config::P),
+            "far" => CameraPath::for_scene(&scene, Config::P.shadows()),
             name => CameraPath::load(name).unwrap(),
         };
         let mut arguments = vec!["camera-path", "export", &what, "-o", toml.to_str().unwrap()];

@@ -1,9 +1,9 @@
 //! Every claim in every verdict, also where it is false.
 
 use super::synthetic::{Builder, everything, sums};
-use rtbench::backend::{Config, DeviceType};
 use rtbench::thesis::claims::{Basis, Finding, Form, UNIFORM_CROWDING, Verdict, crowding, judge, summary, write};
 use rtbench::thesis::{measured, published};
+use rtbench::workloads::trace::backend::{Config, DeviceType};
 
 fn findings(builder: Builder) -> Vec<Finding> {
     judge(&measured::data(&[builder.run]), &published::data(), 0)

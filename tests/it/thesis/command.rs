@@ -1,8 +1,8 @@
 //! The program: broken and empty runs, files, splicing.
 
 use super::synthetic::everything;
-use rtbench::results::journal::{FILE_NAME, JournalWriter};
-use rtbench::results::record::Record;
+use rtbench::record::journal::{FILE_NAME, JournalWriter};
+use rtbench::record::schema::Record;
 use rtbench::thesis::runs::RecordedRun;
 use rtbench::thesis::splice::{Need, splice};
 use std::path::{Path, PathBuf};

@@ -1,7 +1,7 @@
 //! The committed runs are whole, and what the README shows of them is what the program makes of them.
 
-use rtbench::results::journal::Journal;
-use rtbench::results::record::Status;
+use rtbench::record::journal::Journal;
+use rtbench::record::schema::Status;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -1,16 +1,16 @@
 //! Tables 5.9 to 5.11: counts per ray along BART's own cameras, against the published ones.
 
-use rtbench::accel::Selection;
-use rtbench::backend::{Backend, Config, Size};
-use rtbench::bench::measure;
 use rtbench::camera::{CameraPath, View};
-use rtbench::cpu::CpuBackend;
-use rtbench::results::record::CounterSums;
+use rtbench::harness::measure;
+use rtbench::record::schema::CounterSums;
 use rtbench::scene::Scene;
 use rtbench::thesis::convention::Convention;
 use rtbench::thesis::data::Counts;
 use rtbench::thesis::published;
 use rtbench::thesis::scenes::{SceneKey, ThesisScene};
+use rtbench::workloads::trace::CpuBackend;
+use rtbench::workloads::trace::Selection;
+use rtbench::workloads::trace::backend::{Backend, Config, Size};
 use std::path::Path;
 
 /// Frames of the path, evenly spread, and the side of the image. Counts of single rays hardly depend on either: with all
@@ -31,7 +31,7 @@ fn counted(
         return None;
     };
     let scene = rtbench::scene::load_in(scene, Some(Path::new(&folder))).unwrap();
-    let views = choose(&CameraPath::for_scene(&scene, config), &scene);
+    let views = choose(&CameraPath::for_scene(&scene, config.shadows()), &scene);
     let selection = Selection::parse(structure).unwrap();
     let built = selection.build(&scene, 0).unwrap();
     let cpu = CpuBackend::new(0).unwrap();

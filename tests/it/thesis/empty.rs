@@ -2,11 +2,11 @@
 
 use super::synthetic::{Builder, everything};
 use super::tables::{beside, noted, row, table, tables};
-use rtbench::backend::{Config, DeviceType};
 use rtbench::thesis::format::{self, Format};
 use rtbench::thesis::table::{Cell, Line};
 use rtbench::thesis::tables::{IDS, Options, Rows, side, without_numbers};
 use rtbench::thesis::{measured, published};
+use rtbench::workloads::trace::backend::{Config, DeviceType};
 
 #[test]
 fn a_table_without_a_measurement_stands_empty_beside_the_published_numbers() {

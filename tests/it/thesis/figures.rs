@@ -1,9 +1,9 @@
 //! Figures: well-formed XML, what is drawn and what is not.
 
 use super::synthetic::{Builder, everything};
-use rtbench::backend::Config;
 use rtbench::thesis::figures::{Figure, all};
 use rtbench::thesis::{measured, published};
+use rtbench::workloads::trace::backend::Config;
 
 fn count(figure: &Figure, tag: &str) -> usize {
     let document = roxmltree::Document::parse(&figure.svg).unwrap();
@@ -67,7 +67,8 @@ fn a_figure_without_data_is_named() {
 #[test]
 fn odd_names_and_numbers_do_not_break_a_figure() {
     for ms in [1e-6, 1.0, 1e9] {
-        let mut b = Builder::new().device("<GPU> & \"co\"", rtbench::backend::DeviceType::DiscreteGpu);
+        let mut b =
+            Builder::new().device("<GPU> & \"co\"", rtbench::workloads::trace::backend::DeviceType::DiscreteGpu);
         b.frame("a<b>&c", "grid", Config::P, 64, ms);
         b.frame("a<b>&c", "grid", Config::P, 128, ms);
         let (figures, _) = all(&measured::data(&[b.run])).unwrap();

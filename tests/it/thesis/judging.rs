@@ -2,10 +2,10 @@
 
 use super::claims::{build_times, finding, pair, verdict, with};
 use super::synthetic::{Builder, sums};
-use rtbench::backend::{Config, DeviceType};
-use rtbench::results::record::Status;
+use rtbench::record::schema::Status;
 use rtbench::thesis::claims::{Finding, Form, Verdict, judge, write};
 use rtbench::thesis::{measured, published};
+use rtbench::workloads::trace::backend::{Config, DeviceType};
 
 #[test]
 fn the_thesis_s_own_exceptions_are_named_and_nothing_else_is_excused() {

@@ -1,13 +1,13 @@
 //! `results/thesis-2009`: complete, consistent with itself where it is, and with the memory model.
 
 use super::tables::{row, table};
-use rtbench::accel::memory;
-use rtbench::backend::Config;
 use rtbench::thesis::data::{Data, STRUCTURES};
 use rtbench::thesis::published::{self, GT8600, GTX280};
 use rtbench::thesis::scenes::{SceneKey, ThesisScene};
 use rtbench::thesis::table::Line;
 use rtbench::thesis::tables::Options;
+use rtbench::workloads::trace::backend::Config;
+use rtbench::workloads::trace::common::memory;
 
 #[test]
 fn every_row_is_there() {

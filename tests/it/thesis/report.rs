@@ -1,10 +1,10 @@
 //! The report: one page, nothing from outside, everything escaped.
 
 use super::synthetic::{Builder, everything, scene};
-use rtbench::backend::Config;
 use rtbench::thesis::runs::RecordedRun;
 use rtbench::thesis::tables::{Options, Rows};
 use rtbench::thesis::{measured, published, report};
+use rtbench::workloads::trace::backend::Config;
 
 fn page(runs: &[RecordedRun]) -> rtbench::Result<String> {
     let (data, published) = (measured::data(runs), published::data());
@@ -51,9 +51,9 @@ fn everything_is_on_one_page() {
 #[test]
 fn nothing_in_a_record_becomes_markup() {
     let evil = "<script src=x onerror='a'>&\"";
-    let mut b = Builder::new().device(evil, rtbench::backend::DeviceType::DiscreteGpu);
+    let mut b = Builder::new().device(evil, rtbench::workloads::trace::backend::DeviceType::DiscreteGpu);
     b.frame("bunny", "grid", Config::P, 64, 1.0).scene = scene(evil);
-    b.frame("museum", "bvh", Config::P, 64, 1.0).status = rtbench::results::record::Status::Error;
+    b.frame("museum", "bvh", Config::P, 64, 1.0).status = rtbench::record::schema::Status::Error;
     b.run.journal.configurations[1].message = evil.into();
     b.run.journal.provenance.arguments.push(evil.into());
     let html = page(&[b.run]).unwrap();
@@ -68,7 +68,7 @@ fn pictures_are_embedded_and_broken_ones_refused() {
     let pictures = folder.path().join("pictures");
     std::fs::create_dir(&pictures).unwrap();
     for name in ["hall.png", "hall-steps.png", "bunny.png"] {
-        rtbench::results::picture::write_png(&pictures.join(name), 2, 1, &[255; 8]).unwrap();
+        rtbench::record::picture::write_png(&pictures.join(name), 2, 1, &[255; 8]).unwrap();
     }
     std::fs::write(pictures.join("notes.txt"), "no picture").unwrap();
     let mut runs = everything();
@@ -90,7 +90,7 @@ fn a_scene_whose_name_begins_another_s_is_shown_once() {
     for name in ["conference", "conference-obj"] {
         for end in ["", "-steps"] {
             let path = pictures.join(format!("{name}{end}.png"));
-            rtbench::results::picture::write_png(&path, 2, 1, &[255; 8]).unwrap();
+            rtbench::record::picture::write_png(&path, 2, 1, &[255; 8]).unwrap();
         }
     }
     let mut runs = everything();

@@ -1,13 +1,13 @@
 //! Which scene, device, variant and workload a record belongs to.
 
 use super::synthetic::{Builder, sums};
-use rtbench::backend::{Config, DeviceType};
-use rtbench::results::record::{ConfigurationRecord, PathRecord};
+use rtbench::record::schema::{ConfigurationRecord, PathRecord};
 use rtbench::thesis::claims::{Verdict, judge};
 use rtbench::thesis::data::Data;
 use rtbench::thesis::scenes::{SceneKey, ThesisScene};
 use rtbench::thesis::variant::Variant;
 use rtbench::thesis::{measured, published};
+use rtbench::workloads::trace::backend::{Config, DeviceType};
 
 #[test]
 fn a_scene_is_the_thesis_s_by_name_and_counts() {
@@ -189,7 +189,7 @@ fn devices_keep_their_counts() {
 #[test]
 fn presets_measure_a_scene_with_one_number_of_frames() {
     for preset in ["quick", "thesis", "thesis-lite"] {
-        let preset = rtbench::bench::preset::Preset::load(preset).unwrap();
+        let preset = rtbench::harness::preset::Preset::load(preset).unwrap();
         for part in &preset.scene {
             let of_scene = preset.scene.iter().filter(|p| p.scene == part.scene);
             assert!(of_scene.into_iter().all(|p| p.frames == part.frames), "{} {}", preset.name, part.scene);

@@ -1,12 +1,12 @@
 //! Runs with known content, built record by record.
 
 use crate::fakes;
-use rtbench::backend::{Config, DeviceType};
-use rtbench::results::journal::Journal;
-use rtbench::results::record::{
+use rtbench::record::journal::Journal;
+use rtbench::record::schema::{
     ConfigurationRecord, CounterSums, End, Samples, SceneRecord, Status, StructureRecord, TimingSource,
 };
 use rtbench::thesis::runs::RecordedRun;
+use rtbench::workloads::trace::backend::{Config, DeviceType};
 
 /// A run on a discrete GPU, to be filled.
 pub struct Builder {

@@ -1,14 +1,14 @@
 //! Every table, published and measured, in every form.
 
 use super::synthetic::{Builder, everything, scene};
-use rtbench::backend::{Config, DeviceType};
-use rtbench::results::record::Status;
+use rtbench::record::schema::Status;
 use rtbench::thesis::convention::Convention;
 use rtbench::thesis::data::Data;
 use rtbench::thesis::format::{self, Format};
 use rtbench::thesis::table::{Cell, Form, Line, Table};
 use rtbench::thesis::tables::{IDS, Options, Rows, build, select};
 use rtbench::thesis::{measured, published};
+use rtbench::workloads::trace::backend::{Config, DeviceType};
 
 const FORMATS: [Format; 4] = [Format::Text, Format::Markdown, Format::Csv, Format::Latex];
 

@@ -1,0 +1,23 @@
+// References to BVH nodes.
+
+// What a node leads to, in one word (packed by src/workloads/trace/gpu/upload.rs): the left child of an inner node, which the right one
+// follows, or with the top bit set four bits of count and 27 bits of first triangle reference.
+const LEAF: u32 = 0x80000000u;
+const EMPTY: u32 = LEAF; // a leaf without triangle references: the bottom of every stack, and an empty tree's root
+
+fn is_leaf(node: u32) -> bool {
+    return (node & LEAF) != 0u;
+}
+
+fn leaf_first(node: u32) -> u32 {
+    return node & 0x07ffffffu;
+}
+
+fn leaf_count(node: u32) -> u32 {
+    return (node >> 27u) & 15u;
+}
+
+// True if a ray that has found something at `t` still wants a box with this interval.
+fn wanted(interval: vec2<f32>, t: f32) -> bool {
+    return max(interval.x, 0.0) <= min(interval.y, t);
+}

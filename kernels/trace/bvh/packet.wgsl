@@ -1,0 +1,158 @@
+// BVH walked by a packet: the 64 rays of a work-group share one stack and visit the same nodes (Günther et al. 2007),
+// with the thesis's corrected vote: a ray that wants neither child has none (with ORIGINAL_VOTE it has one, by which
+// box begins first on its line). Twin: src/workloads/trace/bvh/packet.rs.
+//
+// All invocations, at most 64, stay until the packet is done; rays that are not alive take part in the barriers only.
+
+//!include lib/cooperative.wgsl
+//!include trace/bvh/node.wgsl
+
+var<workgroup> stack: array<u32, STACK_SIZE>;
+var<workgroup> stack_depth: u32;
+var<workgroup> next: vec2<u32>; // node to visit, and 1 if it came from the stack
+var<workgroup> tally: atomic<u32>;
+
+// The wishes of all rays in one sum: how many want only the left child, only the right one, both (7 bits each, at most
+// 64), and from bit 21 the votes, each +1 too high so that none is negative.
+const LEFT_ONE: u32 = 1u;
+const RIGHT_ONE: u32 = 1u << 7u;
+const BOTH_ONE: u32 = 1u << 14u;
+const VOTE_SHIFT: u32 = 21u;
+const NO_VOTE: u32 = 1u << VOTE_SHIFT;
+
+fn wish(l: vec2<f32>, r: vec2<f32>, go_left: bool, go_right: bool) -> u32 {
+    if (go_left && go_right) {
+        // Right first: +1. Left first: -1. Equally near: 0, which goes left.
+        return BOTH_ONE | (u32(1 + i32(r.x < l.x) - i32(l.x < r.x)) << VOTE_SHIFT);
+    }
+    if (go_left) {
+        return LEFT_ONE;
+    }
+    if (go_right) {
+        return RIGHT_ONE | (2u << VOTE_SHIFT);
+    }
+    if (ORIGINAL_VOTE) {
+        return select(0u, 2u, r.x < l.x) << VOTE_SHIFT;
+    }
+    return NO_VOTE;
+}
+
+// Done by invocation 0 only: what the packet visits next, by the sum of wishes.
+fn choose(left: u32, right: u32) {
+    let sum = atomicExchange(&tally, 0u);
+    let wants_left = (sum & 127u) != 0u;
+    let wants_right = ((sum >> 7u) & 127u) != 0u;
+    let wants_both = ((sum >> 14u) & 127u) != 0u;
+    if (wants_both || (wants_left && wants_right)) {
+        let right_first = (sum >> VOTE_SHIFT) > GROUP_SIZE;
+        stack[stack_depth] = select(right, left, right_first);
+        stack_depth += 1u;
+        next = vec2<u32>(select(left, right, right_first), 0u);
+    } else if (wants_left) {
+        next = vec2<u32>(left, 0u);
+    } else if (wants_right) {
+        next = vec2<u32>(right, 0u);
+    } else {
+        pop();
+    }
+}
+
+// Done by invocation 0 only.
+fn pop() {
+    next = vec2<u32>(EMPTY, 0u);
+    if (stack_depth > 0u) {
+        stack_depth -= 1u;
+        next = vec2<u32>(stack[stack_depth], 1u);
+    }
+}
+
+// The packet's first node. Reached by the whole work-group; the answer is uniform.
+fn start_packet() -> u32 {
+    if (lane == 0u) {
+        stack_depth = 0u;
+        next = vec2<u32>(read_node(0u).reference, 0u);
+    }
+    return workgroupUniformLoad(&next).x;
+}
+
+// Both children's boxes against this ray, the wishes added up, and the packet's next node. Reached by the whole
+// work-group; the answer is uniform.
+fn visit_inner(ray: Ray, node: u32, t: f32, alive: bool) -> u32 {
+    if (alive) {
+        count_inner();
+    }
+    let left = read_node(node);
+    let right = read_node(node + 1u);
+    let l = ray_box(ray, left.lo, left.hi);
+    let r = ray_box(ray, right.lo, right.hi);
+    atomicAdd(&tally, select(NO_VOTE, wish(l, r, wanted(l, t), wanted(r, t)), alive));
+    workgroupBarrier();
+    if (lane == 0u) {
+        choose(left.reference, right.reference);
+    }
+    return announce(alive);
+}
+
+fn leave_leaf(alive: bool) -> u32 {
+    if (lane == 0u) {
+        pop();
+    }
+    return announce(alive);
+}
+
+fn announce(alive: bool) -> u32 {
+    let chosen = workgroupUniformLoad(&next);
+    if (alive && chosen.y == 1u) {
+        count_pop();
+    }
+    return chosen.x;
+}
+
+fn nearest_hit(ray: Ray, alive: bool) -> u32 {
+    var best = no_best();
+    var node = start_packet();
+    while (node != EMPTY) {
+        if (is_leaf(node)) {
+            if (alive) {
+                count_leaf();
+                let first = leaf_first(node);
+                for (var i = first; i < first + leaf_count(node); i += 1u) {
+                    count_test();
+                    test_triangle(ray, i, &best);
+                }
+            }
+            node = leave_leaf(alive);
+        } else {
+            node = visit_inner(ray, node, best.t, alive);
+        }
+    }
+    return best.triangle_ref;
+}
+
+fn any_hit(ray: Ray, limit: f32, alive: bool) -> bool {
+    var blocked = false;
+    var searching = alive; // a ray that is blocked has no more wishes
+    var node = start_packet();
+    while (node != EMPTY) {
+        if (is_leaf(node)) {
+            if (searching) {
+                count_leaf();
+                let first = leaf_first(node);
+                for (var i = first; i < first + leaf_count(node) && searching; i += 1u) {
+                    count_test();
+                    blocked = triangle_occludes(ray, i, limit);
+                    searching = !blocked;
+                }
+            }
+            // The packet ends as soon as every ray is blocked
+            if (group_any(searching)) {
+                node = leave_leaf(searching);
+            } else {
+                node = EMPTY;
+            }
+        } else {
+            node = visit_inner(ray, node, limit, searching);
+        }
+    }
+    return blocked;
+}

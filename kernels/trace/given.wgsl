@@ -1,0 +1,56 @@
+// Given rays: the nearest hit, or with ANY_HIT whether anything is hit. One invocation per ray.
+// Twin: src/workloads/trace/given.rs.
+
+//!include lib/geom.wgsl
+//!include trace/scene.wgsl
+//!include lib/count_off.wgsl
+
+var<private> lane: u32;
+
+//!slot traversal
+
+struct GivenRay {
+    origin: vec4<f32>,
+    direction: vec4<f32>,
+}
+
+struct GivenHit {
+    t: f32,
+    triangle: u32,
+}
+
+struct Job {
+    rays: u32,
+    pad0: u32,
+    pad1: u32,
+    pad2: u32,
+}
+
+@group(0) @binding(0) var<uniform> job: Job;
+@group(0) @binding(3) var<storage, read> given: array<GivenRay>;
+@group(0) @binding(8) var<storage, read_write> hits: array<GivenHit>;
+
+@compute @workgroup_size(GROUP_SIZE)
+fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local_index: u32) {
+    lane = local_index;
+    let index = group.x * GROUP_SIZE + local_index;
+    let alive = index < job.rays;
+    let source = given[min(index, job.rays - 1u)];
+    let ray = ray_along(source.origin.xyz, source.direction.xyz);
+    var hit = GivenHit(T_MAX, MISS);
+    if (ANY_HIT) {
+        if (any_hit(ray, T_MAX, alive)) {
+            hit = GivenHit(0.0, 0u);
+        }
+    } else {
+        let triangle_ref = nearest_hit(ray, alive);
+        if (triangle_ref != MISS) {
+            let r = read_triangle_ref(triangle_ref);
+            let found = surface_hit(ray, read_position(r.x), read_position(r.y), read_position(r.z));
+            hit = GivenHit(found.t, r.w);
+        }
+    }
+    if (alive) {
+        hits[index] = hit;
+    }
+}

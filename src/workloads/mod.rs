@@ -1,0 +1,3 @@
+//! What rtbench can measure: one folder per workload.
+
+pub mod trace;

@@ -1,0 +1,217 @@
+//! BVH builder: top down, SAH over binned centroids, until at most `max_leaf` triangles are left (SPEC section 4).
+
+use crate::error::Result;
+use crate::math::Aabb;
+use crate::scene::Scene;
+use crate::workloads::trace::bvh::bins::{Binning, Item, Rows, Splitter};
+use crate::workloads::trace::bvh::partition::{Partitioner, Sides, centroid_bounds, halve};
+use crate::workloads::trace::bvh::{Bvh, BvhNode, MAX_DEPTH};
+use crate::workloads::trace::common::prims::{self, CHUNK, Prim};
+use crate::workloads::trace::common::sah::{CostModel, half_area, unit};
+use rayon::prelude::*;
+
+/// What can be set.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Config {
+    /// Bins per axis, 2 to 32.
+    pub bins: usize,
+    /// No leaf has more triangles than this, 1 to [`crate::workloads::trace::bvh::MAX_LEAF`].
+    pub max_leaf: usize,
+    /// A node that could be a leaf is split all the same where that is cheaper. An infinite cost of a step makes it a leaf
+    /// always.
+    pub cost: CostModel,
+}
+
+impl Default for Config {
+    /// What explains the published node counts best.
+    fn default() -> Self {
+        Config { bins: 16, max_leaf: 4, cost: CostModel { traversal: f64::INFINITY, intersection: 1.0 } }
+    }
+}
+
+/// Subtrees of at most this many triangles are built by one thread into one vector. A constant, so that the tree does
+/// not depend on the number of threads.
+const TASK: usize = 1024;
+
+/// Builds a BVH over all triangles that can be hit, on the threads of the current rayon pool.
+pub fn build(scene: &Scene, config: &Config) -> Result<Bvh> {
+    let item = |prim: Prim| {
+        let [a, b, c] = scene.corners(prim.triangle());
+        Item { prim, centroid3: (a + b + c).extend(1.0) }
+    };
+    let (mut items, bounds) = prims::gather(scene, Item::NONE, item, |item| &item.prim)?;
+    if items.is_empty() {
+        return Ok(Bvh { bounds, nodes: vec![BvhNode::NONE; 2], triangle_refs: Vec::new(), depth: 0 });
+    }
+    let builder = Builder { config: *config, unit: unit(&bounds) };
+    let rows = Rows { min: bounds.min.extend(0.0), max: bounds.max.extend(0.0) };
+    let part = builder.grow(&mut items, 0, rows, 0);
+    let depth = part.depth;
+    let triangle_ref = |item: &Item| prims::triangle_ref(scene, item.prim.triangle());
+    let (nodes, triangle_refs) = rayon::join(
+        || part.into_nodes(),
+        || {
+            let triangle_refs = items.par_iter().with_min_len(CHUNK).map(triangle_ref).collect();
+            drop(items);
+            triangle_refs
+        },
+    );
+    Ok(Bvh { bounds, nodes, triangle_refs, depth })
+}
+
+struct Builder {
+    config: Config,
+    unit: f32,
+}
+
+/// A finished subtree: its root, and what lies below it.
+struct Part {
+    root: BvhNode,
+    below: Below,
+    depth: u32,
+}
+
+enum Below {
+    /// Pairs of siblings; links count from the start of this vector.
+    Nodes(Vec<BvhNode>),
+    /// Two subtrees that were built side by side.
+    Parts(Box<[Part; 2]>),
+}
+
+/// What one thread works with on a subtree.
+struct Desk {
+    splitter: Splitter,
+    partitioner: Partitioner,
+    nodes: Vec<BvhNode>,
+}
+
+impl Builder {
+    /// Builds the subtree of `items`, whose triangle references will begin at `first`; sides of large nodes in parallel.
+    fn grow(&self, items: &mut [Item], first: u32, bounds: Rows, depth: u32) -> Part {
+        let mut desk = Desk {
+            splitter: Splitter::new(self.unit),
+            partitioner: Partitioner::new(),
+            nodes: Vec::with_capacity(if items.len() <= TASK { items.len() / 4 * 3 } else { 0 }),
+        };
+        if items.len() <= TASK {
+            let (root, depth) = self.subtree(items, first, bounds, depth, &mut desk);
+            return Part { root, below: Below::Nodes(desk.nodes), depth };
+        }
+        let sides = self.divide(items, depth, &mut desk);
+        let (left, right) = items.split_at_mut(sides.mid);
+        let (a, b) = rayon::join(
+            || self.grow(left, first, sides.left, depth + 1),
+            || self.grow(right, first + sides.mid as u32, sides.right, depth + 1),
+        );
+        let depth = 1 + a.depth.max(b.depth);
+        Part { root: BvhNode::inner(&bounds, 0), below: Below::Parts(Box::new([a, b])), depth }
+    }
+
+    /// Builds a subtree on one thread, depth first; returns its root and its depth.
+    fn subtree(&self, items: &mut [Item], first: u32, bounds: Rows, depth: u32, desk: &mut Desk) -> (BvhNode, u32) {
+        if items.len() <= self.config.max_leaf && !self.is_worth_splitting(items, &bounds, depth, desk) {
+            return (BvhNode::leaf(&bounds, first, items.len() as u32), 0);
+        }
+        let sides = self.divide(items, depth, desk);
+        let pair = desk.nodes.len();
+        desk.nodes.extend([BvhNode::NONE; 2]);
+        let (left, right) = items.split_at_mut(sides.mid);
+        let (a, a_depth) = self.subtree(left, first, sides.left, depth + 1, desk);
+        let (b, b_depth) = self.subtree(right, first + sides.mid as u32, sides.right, depth + 1, desk);
+        desk.nodes[pair..pair + 2].copy_from_slice(&[a, b]);
+        (BvhNode::inner(&bounds, pair as u32), 1 + a_depth.max(b_depth))
+    }
+
+    /// True if a node of few triangles costs less, by the surface area heuristic, with two leaves than as one.
+    fn is_worth_splitting(&self, items: &[Item], bounds: &Rows, depth: u32, desk: &mut Desk) -> bool {
+        let CostModel { traversal, intersection } = self.config.cost;
+        if !traversal.is_finite() || items.len() < 2 || is_near_the_bottom(items, depth) {
+            return false;
+        }
+        let Some(split) = desk.splitter.find(items, &self.binning(items)) else { return false };
+        let tests = |sides: &Rows, count: usize| half_area(&sides.aabb()) * count as f64;
+        let split_tests = tests(&split.left, split.left_count) + tests(&split.right, items.len() - split.left_count);
+        let whole_tests = tests(bounds, items.len());
+        traversal * half_area(&bounds.aabb()) + intersection * split_tests < intersection * whole_tests
+    }
+
+    /// Bins for the centroids of a node.
+    fn binning(&self, items: &[Item]) -> Binning {
+        // Most nodes are small. Half the bins do there (bunny: 0.1 % on the cost), since more would stay empty. At least
+        // four bins are used.
+        let Config { bins, .. } = self.config;
+        let bins = if items.len() <= 2 * bins { bins.div_ceil(2).max(bins.min(4)) } else { bins };
+        Binning::new(&centroid_bounds(items), bins)
+    }
+
+    /// Reorders `items` into two non-empty sides.
+    fn divide(&self, items: &mut [Item], depth: u32, desk: &mut Desk) -> Sides {
+        if is_near_the_bottom(items, depth) {
+            return halve(items);
+        }
+        let binning = self.binning(items);
+        let Some(split) = desk.splitter.find(items, &binning) else { return halve(items) };
+        let mid = desk.partitioner.shared(items, |item| binning.of(item)[split.axis] <= split.bin);
+        debug_assert_eq!(mid, split.left_count);
+        Sides { mid, left: split.left, right: split.right }
+    }
+}
+
+/// True if halving from here on would just keep within the greatest depth: no more adventures.
+fn is_near_the_bottom(items: &[Item], depth: u32) -> bool {
+    let halvings = usize::BITS - items.len().leading_zeros();
+    depth + halvings >= MAX_DEPTH
+}
+
+impl Part {
+    fn len(&self) -> usize {
+        match &self.below {
+            Below::Nodes(nodes) => nodes.len(),
+            Below::Parts(parts) => 2 + parts[0].len() + parts[1].len(),
+        }
+    }
+
+    /// Lays the parts out one after another behind the root pair and moves their links.
+    fn into_nodes(self) -> Vec<BvhNode> {
+        let mut nodes: Vec<BvhNode> = bytemuck::zeroed_vec(2 + self.len());
+        let (pair, rest) = nodes.split_at_mut(2);
+        pair.copy_from_slice(&[self.place(rest, 2), BvhNode::NONE]);
+        nodes
+    }
+
+    /// Writes everything below this part's root to `out`, which begins at node `base`; returns the root.
+    fn place(self, out: &mut [BvhNode], base: u32) -> BvhNode {
+        match self.below {
+            Below::Nodes(nodes) => {
+                out.iter_mut().zip(&nodes).for_each(|(out, node)| *out = node.moved(base));
+                self.root.moved(base)
+            }
+            Below::Parts(parts) => {
+                let [a, b] = *parts;
+                let (pair, rest) = out.split_at_mut(2);
+                let a_len = a.len();
+                let (a_out, b_out) = rest.split_at_mut(a_len);
+                let (left, right) =
+                    rayon::join(|| a.place(a_out, base + 2), || b.place(b_out, base + 2 + a_len as u32));
+                pair.copy_from_slice(&[left, right]);
+                self.root.moved(base)
+            }
+        }
+    }
+}
+
+impl BvhNode {
+    fn leaf(bounds: &Rows, first: u32, count: u32) -> BvhNode {
+        let Aabb { min, max } = bounds.aabb();
+        BvhNode { min: min.to_array(), first, max: max.to_array(), count }
+    }
+
+    fn inner(bounds: &Rows, first: u32) -> BvhNode {
+        BvhNode::leaf(bounds, first, 0)
+    }
+
+    /// With its link moved by `base`; leaves refer to triangle references, which do not move.
+    fn moved(self, base: u32) -> BvhNode {
+        if self.count == 0 { BvhNode { first: self.first + base, ..self } } else { self }
+    }
+}

@@ -1,0 +1,55 @@
+//! Structs that kernels and host share, beside those of [`crate::math`], [`crate::scene`], [`crate::workloads::trace`] and
+//! [`crate::workloads::trace::backend`]. A test compares size and offsets of each with naga's layout of its WGSL twin.
+
+use crate::workloads::trace::grid::octants::Octant;
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+
+/// `Frame` of `kernels/trace/render.wgsl`: one frame, or a part of it.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+#[allow(missing_docs)] // the fields are described in the kernel
+pub struct FrameUniform {
+    pub origin: Vec3,
+    pub width: u32,
+    pub corner: Vec3,
+    pub first_row: u32,
+    pub right: Vec3,
+    pub rows: u32,
+    pub down: Vec3,
+    pub epsilon: f32,
+    pub background: Vec3,
+    pub light_count: u32,
+    pub first_light: u32,
+    pub first_pixel: u32,
+    pub first_column: u32,
+    pub columns: u32,
+    pub height: u32,
+    pub shadow_reach: f32,
+    pub pad: [u32; 2],
+}
+
+/// `Structure` of `kernels/trace/scene.wgsl`.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+#[allow(missing_docs)]
+pub struct StructureUniform {
+    pub bounds_min: Vec3,
+    pub cell_size: f32,
+    pub bounds_max: Vec3,
+    pub triangle_refs: u32,
+    pub resolution: [u32; 3],
+    pub pad: u32,
+    pub octants: [Octant; 8],
+}
+
+/// `GivenRay` of `kernels/trace/given.wgsl`.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+#[allow(missing_docs)]
+pub struct TraceRay {
+    pub origin: Vec3,
+    pub pad0: f32,
+    pub direction: Vec3,
+    pub pad1: f32,
+}
