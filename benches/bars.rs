@@ -5,8 +5,9 @@
 
 mod common;
 
-use common::{Input, median, ratio, sorted};
+use common::{Input, median, ratio};
 use glam::Vec3;
+use rtbench::record::statistics::sorted;
 use rtbench::scene::Scene;
 use rtbench::workloads::trace::Selection;
 use std::hint::black_box;
@@ -49,8 +50,8 @@ fn main() {
     }
 }
 
-/// Where PLOC alone would take time with the square of the triangles: `ploc-stack` may take three times as long as `bvh`, and
-/// a second. False where it takes longer.
+/// Where PLOC alone would take time with the square of the triangles: `ploc-stack` may take three times as long as
+/// `bvh`, and a second. False where it takes longer.
 fn degenerate(triangles: usize, rounds: usize) -> bool {
     let mut within = true;
     let corners = [Vec3::ZERO, Vec3::X, Vec3::Y];
@@ -108,7 +109,7 @@ fn bars(name: &str, scene: &Scene, rounds: usize) {
         ("grid, 1 thread", "bvh, 1 thread", "less than 1"),
         ("bvh, 1 thread", "obvhs medium, 1 thread", "none"),
     ] {
-        let (middle, low, high) = ratio(of(a), of(b));
-        println!("  {a} / {b}: {middle:.3} ({low:.3} to {high:.3}), bar: {bar}");
+        let ratio = ratio(of(a), of(b));
+        println!("  {a} / {b}: {:.3} ({:.3} to {:.3}), bar: {bar}", ratio.value, ratio.low, ratio.high);
     }
 }

@@ -1,4 +1,4 @@
-//! Building every structure, over several sizes, on one thread and on all, beside other people's builders.
+//! Building every structure, over several sizes, on one thread and on all, and builders of other crates.
 //!
 //! `cargo bench --bench build`; set RTBENCH_SCENES for bunny and dragon.
 

@@ -1,15 +1,17 @@
 //! How fast scenes are read: `cargo bench --bench load`; RTBENCH_SCENES names the folder with the real scenes.
 //!
-//! For every format the largest file below that folder: megabytes per second on one core. Files that it includes are read,
-//! but not counted. Where that file is small, most of the time goes into opening it and into curved surfaces; so a large
-//! mesh is written in that format and read as well. Triangles per second tell what a file is bound by: a line that says
-//! `s`, a sphere, becomes hundreds of them, so that of many spheres (as in Haines's SPD, `balls`) few megabytes are read
-//! in the time in which most triangles are made. Then the bar of the cache: the same scene from its source and from its
-//! `.rtb`, in turns, and the median of the ratios; for files of a megabyte or more, since others load at once.
+//! For every format the largest file below that folder: megabytes per second on one core. Files that it includes are
+//! read, but not counted. Where that file is small, most of the time goes into opening it and into curved surfaces; so
+//! a large mesh is written in that format and read as well. Triangles per second tell what a file is bound by: a line
+//! that says `s`, a sphere, becomes hundreds of them, so that of many spheres (as in Haines's SPD, `balls`) few
+//! megabytes are read in the time in which most triangles are made. Then the bar of the cache: the same scene from its
+//! source and from its `.rtb`, in turns, and the median of the ratios; for files of a megabyte or more, since others
+//! load at once.
 
 mod common;
 
-use common::{median, sign_test_interval};
+use common::median;
+use rtbench::record::statistics::sign_test_interval;
 use rtbench::scene::cache::{self, Sources};
 use rtbench::scene::{FORMATS, Options, load};
 use std::collections::BTreeMap;
@@ -110,9 +112,9 @@ fn made(folder: &Path) -> Vec<(&'static str, PathBuf)> {
     files.map(write).into()
 }
 
-/// A sphere with nine around it, and so on, as in `balls` of Haines's SPD: 820 for a depth of three. (There they are turned
-/// so that they touch; a reader does not care. The 7381 of the next depth would be more triangles than a file of this size
-/// may become.)
+/// A sphere with nine around it, and so on, as in `balls` of Haines's SPD: 820 for a depth of three. (There they are
+/// turned so that they touch; a reader does not care. The 7381 of the next depth would be more triangles than a file of
+/// this size may become.)
 fn balls(depth: u32) -> String {
     fn add(text: &mut String, [x, y, z]: [f64; 3], radius: f64, depth: u32) {
         writeln!(text, "s {x:.6} {y:.6} {z:.6} {radius:.6}").expect("a string takes all");
@@ -142,7 +144,7 @@ fn throughput(extension: &str, path: &Path) {
     // A small file is read some megabytes long: the first times are not those of the reader
     let rounds = (5.0 / megabytes).clamp(15.0, 1000.0) as usize;
     let rates: Vec<f64> = common::pool(1).install(|| (0..rounds).map(rate).collect());
-    let (low, high) = sign_test_interval(&rates);
+    let (low, high) = sign_test_interval(&rates).expect("a round");
     let (rate, file) = (median(&rates), path.display());
     let interval = format!("{rate:.1} ({low:.1} to {high:.1})");
     println!("{extension:<12} {megabytes:>9.4} {interval:>22} {:>11.1}  {file}", triangles / megabytes * rate);
@@ -163,7 +165,8 @@ fn interleaved(name: &str, contestants: &[(&str, &Path)], rounds: usize) {
     let times = common::interleaved(&mut loads, rounds);
     println!("{name}");
     for ((contestant, _), own) in contestants.iter().zip(&times) {
-        let (middle, low, high) = common::ratio(&times[0], own);
-        println!("    {contestant:<8} {:>8.2} ms  {middle:.1} times as fast ({low:.1} to {high:.1})", median(own));
+        let (own, ratio) = (median(own), common::ratio(&times[0], own));
+        let interval = format!("({:.1} to {:.1})", ratio.low, ratio.high);
+        println!("    {contestant:<8} {own:>8.2} ms  {:.1} times as fast {interval}", ratio.value);
     }
 }

@@ -7,16 +7,18 @@
 
 mod common;
 
-use common::{Input, median, ratio, sorted};
+use common::{Input, median, ratio};
 use obvhs::BvhBuildParams;
 use obvhs::ray::{Ray, RayHit};
 use obvhs::rt_triangle::RtTriangle;
 use rayon::prelude::*;
 use rtbench::camera::{CameraPath, View};
+use rtbench::device::VulkanDevice;
+use rtbench::device::vulkan::{Selector, VulkanOptions, adapters, choose};
+use rtbench::record::statistics::sorted;
 use rtbench::scene::Scene;
 use rtbench::workloads::trace::CpuBackend;
 use rtbench::workloads::trace::backend::{Backend, Config, Prepared, Size};
-use rtbench::workloads::trace::gpu::{GpuBackend, GpuOptions, Selector};
 use rtbench::workloads::trace::{Built, Selection};
 use std::hint::black_box;
 use std::time::Instant;
@@ -58,7 +60,7 @@ fn rays(name: &str, scene: &Scene, side: u32, rounds: usize) {
         })
         .collect();
     let cpu = CpuBackend::new(0).expect("threads");
-    let gpu = GpuBackend::open(&Selector::Best, GpuOptions::default());
+    let gpu = choose(&adapters(), &Selector::Best).and_then(|best| VulkanDevice::open(best, VulkanOptions::default()));
     if let Err(error) = &gpu {
         println!("the GPU is left out: {error}");
     }
@@ -67,7 +69,7 @@ fn rays(name: &str, scene: &Scene, side: u32, rounds: usize) {
     for backend in [Some(&cpu as &dyn Backend), gpu.as_ref().ok().map(|gpu| gpu as &dyn Backend)].into_iter().flatten()
     {
         for (selection, built) in &built {
-            let mut prepared = backend.prepare(scene, &built.structure, selection.method()).expect("fits");
+            let mut prepared = backend.prepare(scene, &*built.structure, selection.method()).expect("fits");
             frame(prepared.as_mut(), view, size);
             let label = format!("{} ({})", selection.name(), backend.info().backend);
             contestants.push((label, Box::new(move || frame(prepared.as_mut(), view, size))));
@@ -80,8 +82,8 @@ fn rays(name: &str, scene: &Scene, side: u32, rounds: usize) {
     for ((label, _), own) in contestants.iter().zip(&times) {
         let rate = size.pixels() as f64 / median(own) * 1e-3;
         print!("  {label:22} median {:8.2} ms, fastest {:8.2} ms, {rate:6.2} Mrays/s", median(own), sorted(own)[0]);
-        let (middle, low, high) = ratio(&times[0], own);
-        println!(", {middle:.3} ({low:.3} to {high:.3}) of obvhs's rays per second");
+        let ratio = ratio(&times[0], own);
+        println!(", {:.3} ({:.3} to {:.3}) of obvhs's rays per second", ratio.value, ratio.low, ratio.high);
     }
 }
 

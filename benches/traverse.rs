@@ -16,7 +16,7 @@ use rtbench::camera::Camera;
 use rtbench::scene::Scene;
 use rtbench::workloads::trace::CpuBackend;
 use rtbench::workloads::trace::backend::{Backend, GivenRay};
-use rtbench::workloads::trace::{Selection, variants};
+use rtbench::workloads::trace::{Selection, algorithms};
 use std::hint::black_box;
 use std::time::Duration;
 
@@ -98,11 +98,11 @@ fn traversals(c: &mut Criterion, name: &str, scene: &Scene, size: u32) {
     let cpu = CpuBackend::new(0).expect("threads");
     let ray = |&(origin, direction): &(Vec3A, Vec3A)| GivenRay { origin: origin.into(), direction: direction.into() };
     let given: Vec<GivenRay> = rays.iter().map(ray).collect();
-    for variant in variants().iter().filter(|variant| variant.name != "brute") {
-        let selection = Selection::parse(variant.name).expect("a name of the table");
+    for algorithm in algorithms().iter().filter(|algorithm| algorithm.name != "brute") {
+        let selection = Selection::parse(algorithm.name).expect("a name of the table");
         let built = selection.build(scene, 0).expect("builds");
-        let mut twin = cpu.prepare(scene, &built.structure, selection.method()).expect("fits");
-        group.bench_function(variant.name, |b| b.iter(|| black_box(twin.trace(&given, false).expect("traces"))));
+        let mut twin = cpu.prepare(scene, &*built.structure, selection.method()).expect("fits");
+        group.bench_function(algorithm.name, |b| b.iter(|| black_box(twin.trace(&given, false).expect("traces"))));
     }
 }
 

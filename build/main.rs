@@ -1,5 +1,5 @@
-//! Tells the program where it comes from: git revision, whether it was changed since, compiler, profile, target.
-//! Nothing here may fail: a tarball without git builds as well, and says `unknown`.
+//! Tells the program where it comes from: git revision, whether it was changed since, compiler, profile, target. None
+//! of that may fail: a tarball without git builds as well, and says `unknown`. Also lists the files of `kernels/`.
 
 mod tokens;
 
@@ -26,26 +26,27 @@ fn main() {
     set("READERS", &readers());
     set("TARGET", &std::env::var("TARGET").unwrap_or_else(|_| "unknown".into()));
 
+    let files = Path::new(&std::env::var("OUT_DIR").unwrap_or_default()).join("kernel_files.rs");
+    if let Err(error) = std::fs::write(&files, kernel_files()) {
+        println!("cargo::error=cannot write {}: {error}", files.display());
+    }
+
     for path in SOURCES.iter().filter(|path| Path::new(path).exists()) {
         println!("cargo::rerun-if-changed={path}");
     }
-    // The log of HEAD grows with every commit and checkout. (The index would do too, but `git status` alone touches it.)
+    // The log of HEAD grows with every commit and checkout. (The index would do too, but `git status` alone touches
+    // it.)
     if let Some(log) = git(&["rev-parse", "--git-path", "logs/HEAD"]).filter(|log| Path::new(log).exists()) {
         println!("cargo::rerun-if-changed={log}");
     }
 }
 
-/// A hash (FNV-1a, 64 bits, hexadecimal) of everything that decides which scene a file gives: by it a cache is known to be
-/// stale. Of Rust sources it takes the tokens, so that comments and layout do not matter, and of the dependencies those that
-/// readers use. `DefaultHasher` would do, but may change with the compiler.
+/// A hash (FNV-1a, 64 bits, hexadecimal) of everything that decides which scene a file gives: by it a cache is known to
+/// be stale. Of Rust sources it takes the tokens, so that comments and layout do not matter, and of the dependencies
+/// those that readers use. `DefaultHasher` would do, but may change with the compiler.
 fn readers() -> String {
-    let mut files = vec![PathBuf::from("src/math.rs")];
-    let mut folders = vec![PathBuf::from("src/scene")];
-    while let Some(folder) = folders.pop() {
-        for path in std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
-            if path.is_dir() { folders.push(path) } else { files.push(path) }
-        }
-    }
+    let mut files = files_below("src/scene");
+    files.push(PathBuf::from("src/math.rs"));
     files.sort();
     let read = |path: &Path| std::fs::read_to_string(path).unwrap_or_default();
     let mut text: String = files.iter().map(|file| tokens::of(&read(file))).collect();
@@ -55,6 +56,32 @@ fn readers() -> String {
     let hash =
         text.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, b| (hash ^ u64::from(b)).wrapping_mul(0x100_0000_01b3));
     format!("{hash:016x}")
+}
+
+/// Rust source of a constant `FILES` with the name and the text of every kernel file.
+fn kernel_files() -> String {
+    let mut text = String::from("/// Every file of `kernels/`: its name below that folder, and its text.\n");
+    text += "pub const FILES: &[(&str, &str)] = &[\n";
+    for path in files_below("kernels").iter().filter(|path| path.extension().is_some_and(|e| e == "wgsl")) {
+        let path = path.to_string_lossy().replace('\\', "/");
+        let name = path.trim_start_matches("kernels/");
+        let text_of = format!("include_str!(concat!(env!(\"CARGO_MANIFEST_DIR\"), {:?}))", format!("/{path}"));
+        text += &format!("    ({name:?}, {text_of}),\n");
+    }
+    text + "];\n"
+}
+
+/// All files in a folder and the folders below it, in alphabetical order.
+fn files_below(folder: &str) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    let mut folders = vec![PathBuf::from(folder)];
+    while let Some(folder) = folders.pop() {
+        for path in std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
+            if path.is_dir() { folders.push(path) } else { files.push(path) }
+        }
+    }
+    files.sort();
+    files
 }
 
 /// Dependencies that decide what a reader makes of a file.

@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 /// Shorthand for results of this crate.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// What went wrong, in a user's words. Every variant prints as one line.
+/// An error, as a message for the user. Every variant prints as one line.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// Something given by the user cannot be used.
+    /// A file, an argument or another input of the user cannot be used.
     #[error("{0}")]
     Input(Input),
     /// A result cannot be written (disk full, folder not writable).
@@ -17,33 +17,57 @@ pub enum Error {
     Output {
         /// The file or folder that was being written.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
-    /// The device refuses (limits, memory, validation): this configuration cannot run, others may.
+    /// An algorithm, a budget or a device cannot do what was asked for; other cases may be possible.
+    #[error("{0}")]
+    Refused(Refusal),
+    /// The device reports an error: this case cannot run, others may.
     #[error("{0}")]
     Device(String),
     /// The device is gone or does not answer: it must be opened again before anything else runs on it.
     #[error("device lost: {0}")]
     DeviceLost(String),
-    /// Ctrl-C.
+    /// The user pressed Ctrl-C.
     #[error("interrupted")]
     Interrupted,
-    /// Not a failure but an answer, where a document was only to be checked: it is not what would be written now.
+    /// The answer of a check (`--check`), not a failure: the document differs from what would be written now.
     #[error("{}: is not up to date (run the same without --check)", .0.display())]
     NotUpToDate(PathBuf),
 }
 
-/// A problem with something that the user gave: where it stands, what is wrong, how to mend it.
+/// Why something cannot be done, although nothing is wrong with the input or the device.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Refusal {
+    /// The algorithm or the device has no such function.
+    Unsupported(String),
+    /// It would take more than a limit allows: what, how much, the limit, and what to do.
+    TooLarge(String),
+    /// The device has no memory left for it; it may have once others are done.
+    OutOfMemory(String),
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Refusal::Unsupported(what) => write!(f, "unsupported: {what}"),
+            Refusal::TooLarge(what) => write!(f, "too large: {what}"),
+            Refusal::OutOfMemory(what) => write!(f, "out of device memory: {what}"),
+        }
+    }
+}
+
+/// A problem with something that the user gave: where it is, what is wrong, what to do.
 #[derive(Debug, Clone)]
 pub struct Input {
-    /// File, or the flag's name where no file is involved.
+    /// Path of the file, or the name of the flag or argument if no file is involved.
     pub place: String,
     /// Line in the file, counted from 1.
     pub line: Option<usize>,
-    /// What is wrong.
+    /// Describes what is wrong, as one line.
     pub problem: String,
-    /// What to do about it; may be empty.
+    /// Tells what to do about it; may be empty.
     pub hint: String,
 }
 
@@ -62,14 +86,29 @@ impl fmt::Display for Input {
 }
 
 impl Error {
-    /// A problem with a file: `line` counts from 1.
+    /// An [`Error::Input`] about a file; `line` counts from 1.
     pub fn file(path: &Path, line: Option<usize>, problem: impl Into<String>, hint: impl Into<String>) -> Self {
         Error::Input(Input { place: path.display().to_string(), line, problem: problem.into(), hint: hint.into() })
     }
 
-    /// A problem with an argument; `place` is the flag or the argument's name.
+    /// An [`Error::Input`] about an argument; `place` is the flag or the argument's name.
     pub fn argument(place: impl Into<String>, problem: impl Into<String>, hint: impl Into<String>) -> Self {
         Error::Input(Input { place: place.into(), line: None, problem: problem.into(), hint: hint.into() })
+    }
+
+    /// A function that an algorithm or a device does not have.
+    pub fn unsupported(what: impl Into<String>) -> Self {
+        Error::Refused(Refusal::Unsupported(what.into()))
+    }
+
+    /// Something over a limit; `problem` names the need and the limit.
+    pub fn too_large(what: impl fmt::Display, problem: impl fmt::Display, hint: &str) -> Self {
+        Error::Refused(Refusal::TooLarge(format!("{what}: {problem} ({hint})")))
+    }
+
+    /// True for what may be possible once other things have left the device.
+    pub fn is_lack_of_room(&self) -> bool {
+        matches!(self, Error::Device(_) | Error::Refused(Refusal::OutOfMemory(_)))
     }
 
     /// A failed write to `path`.
@@ -77,8 +116,7 @@ impl Error {
         Error::Output { path: path.to_owned(), source }
     }
 
-    /// The process's exit code: 130 after Ctrl-C (128 + SIGINT), 1 for the answer "no", 2 for everything that could not
-    /// run.
+    /// The process's exit code: 130 after Ctrl-C (128 + SIGINT), 1 for [`Error::NotUpToDate`], 2 for every other error.
     pub fn exit_code(&self) -> u8 {
         match self {
             Error::Interrupted => 130,
@@ -86,4 +124,9 @@ impl Error {
             _ => 2,
         }
     }
+}
+
+/// A message of several lines as one.
+pub(crate) fn one_line(message: &dyn fmt::Display) -> String {
+    message.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
 }

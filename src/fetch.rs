@@ -1,13 +1,13 @@
-//! Fetching a scene of the catalogue from its official source.
+//! Downloads a scene of the catalogue from its official source.
 //!
-//! 1. Download the archive into a file of its own beside the scene's place. What is there of an earlier attempt is
-//!    continued (`Range`), and so is a download whose connection breaks or falls silent.
-//! 2. Check its SHA-256, where the catalogue knows it, before anything is unpacked.
-//! 3. Unpack the one file that is the scene, under a temporary name. Every other entry is only looked at: an archive with
-//!    a path that leaves the folder is refused as a whole.
-//! 4. Check the file's SHA-256, where the catalogue knows it, before it gets its name. Nothing is ever overwritten.
+//! 1. Download the archive into a temporary file in the scene's folder. A partial file of an earlier attempt is
+//!    continued (`Range`), and so is a download of which the connection breaks or stalls.
+//! 2. Check the archive's SHA-256, if the catalogue has one, before anything is unpacked.
+//! 3. Unpack the scene's file under a temporary name. No other entry is unpacked, but all paths are checked: an archive
+//!    with a path that leaves the folder is refused as a whole.
+//! 4. Check the file's SHA-256, if the catalogue has one, before the file is renamed. No file is ever overwritten.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, one_line};
 use crate::scene::catalogue::{Archive, Entry, sha256};
 use flate2::read::GzDecoder;
 use sha2::{Digest, Sha256};
@@ -17,53 +17,55 @@ use std::path::{Component, Path, PathBuf};
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::time::Duration;
 
-/// Most bytes of an archive, and of everything in it: far more than any scene of the catalogue, and less than a disk.
+/// The largest archive in bytes: far more than any scene of the catalogue needs.
 const MAX_ARCHIVE: u64 = 1 << 30;
+/// The largest number of bytes that are decompressed from an archive.
 const MAX_UNPACKED: u64 = 1 << 33;
 
-/// Attempts in a row that bring nothing, before it is given up.
+/// The download fails after this many consecutive attempts that receive no byte.
 const MAX_ATTEMPTS: u32 = 3;
 
-/// A server that sends nothing for so long is taken for gone.
-pub const SILENCE: Duration = Duration::from_secs(60);
+/// A connection that delivers no byte for this long counts as broken.
+const READ_TIMEOUT: Duration = Duration::from_secs(60);
 
-/// What happens, for whoever watches.
+/// Progress of a download, for the callback of [`fetch_archive`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// So many bytes are here, of so many if the server says.
+    /// Bytes received so far, and the size of the archive if the server sends it.
     Downloaded(u64, Option<u64>),
-    /// The connection broke: it goes on from where it was.
-    Again(String),
-    /// The archive is here; its file is being unpacked.
+    /// The connection broke for this reason; the download continues where it ended.
+    Retry(String),
+    /// The archive is complete; the scene's file is being unpacked.
     Unpacking,
 }
 
-/// How far a fetched file is known to be the right one.
+/// The hash of the catalogue against which a downloaded file was checked.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verified {
     /// The archive's hash is the catalogue's.
     Archive,
-    /// The file's hash is the catalogue's; the archive's is not known.
+    /// The file's hash is the catalogue's; the catalogue has none of the archive.
     File,
-    /// The catalogue knows neither. This is the file's SHA-256.
+    /// The catalogue has neither hash. The value is the file's SHA-256, hexadecimal.
     Unknown(String),
 }
 
-/// Fetches a scene into `folder`; returns where it is.
+/// Downloads a scene into `folder` and returns the path of its file.
 ///
 /// # Errors
-/// [`Error::Input`]: no official source, a file that is there already, what the server says, a wrong hash, a suspicious
-/// archive. [`Error::Output`] if it cannot be written.
-pub fn fetch(entry: &Entry, folder: &Path, watch: &mut dyn FnMut(Event)) -> Result<(PathBuf, Verified)> {
+/// [`Error::Input`] if the catalogue has no address, the file exists, the server refuses, a hash differs, or the
+/// archive is broken or leaves its folder. [`Error::Output`] if the file cannot be written.
+pub(crate) fn fetch(entry: &Entry, folder: &Path, watch: &mut dyn FnMut(Event)) -> Result<(PathBuf, Verified)> {
     let Some(archive) = &entry.fetch else {
         let problem = format!("no official address is known from which {} could be fetched", entry.name);
         return Err(Error::argument(&entry.name, problem, format!("get it by hand, from {}", entry.source)));
     };
     let known = entry.file.iter().find(|candidate| candidate.path == archive.to);
-    fetch_archive(&entry.name, archive, known.and_then(|k| k.sha256.as_deref()), folder, SILENCE, watch)
+    fetch_archive(&entry.name, archive, known.and_then(|k| k.sha256.as_deref()), folder, READ_TIMEOUT, watch)
 }
 
-/// Fetches one file of an archive; `sha256` is that file's, if it is known; `silence` is how long a server may send nothing.
+/// Downloads one file of an archive. `sha256` is the hash of that file, if it is known; after `read_timeout` without a
+/// byte the connection counts as broken.
 ///
 /// # Errors
 /// As [`fetch`].
@@ -72,7 +74,7 @@ pub fn fetch_archive(
     archive: &Archive,
     sha256: Option<&str>,
     folder: &Path,
-    silence: Duration,
+    read_timeout: Duration,
     watch: &mut dyn FnMut(Event),
 ) -> Result<(PathBuf, Verified)> {
     let target = folder.join(&archive.to);
@@ -82,7 +84,7 @@ pub fn fetch_archive(
     let home = target.parent().unwrap_or(folder);
     fs::create_dir_all(home).map_err(|e| Error::output(home, e))?;
     let download = home.join(format!(".{name}.tar.gz.part"));
-    download_to(&archive.url, &download, silence, watch)?;
+    download_to(&archive.url, &download, read_timeout, watch)?;
     if let Some(expected) = &archive.sha256 {
         let found = hash_file(&download)?;
         if found != *expected {
@@ -94,11 +96,11 @@ pub fn fetch_archive(
     let unpacked = home.join(format!(".{name}.unpacked.part"));
     let result = unpack(&download, archive, &unpacked).and_then(|found| match sha256 {
         Some(expected) if found != expected => Err(wrong_hash(&archive.url, "file", &found, expected)),
-        // Looked at again: it may have come from elsewhere in the meantime.
+        // This is checked again because another process may have created the file in the meantime.
         _ if target.exists() => Err(Error::file(&target, None, "it is there already", "nothing is overwritten")),
         _ => fs::rename(&unpacked, &target).map(|()| found).map_err(|e| Error::output(&target, e)),
     });
-    // Whether it went well or not: the archive is of no more use, and a broken one must not be continued.
+    // The archive is removed in any case: it is no longer needed, and a broken one must not be continued.
     discard(&download);
     let found = result.inspect_err(|_| discard(&unpacked))?;
     let verified = match (&archive.sha256, sha256) {
@@ -109,31 +111,31 @@ pub fn fetch_archive(
     Ok((target, verified))
 }
 
-/// Removes a temporary file; that it is not there, or cannot be removed, changes nothing.
+/// Removes a temporary file; errors are ignored.
 fn discard(path: &Path) {
     let _ = fs::remove_file(path);
 }
 
-fn wrong_hash(url: &str, what: &str, found: &str, expected: &str) -> Error {
-    let problem = format!("the {what} is not the expected one: its SHA-256 is {found}, not {expected}");
+fn wrong_hash(url: &str, subject: &str, found: &str, expected: &str) -> Error {
+    let problem = format!("the {subject} is not the expected one: its SHA-256 is {found}, not {expected}");
     Error::argument(url, problem, "it was removed; try again, or get the scene by hand")
 }
 
-/// Downloads until all is here, continuing what is there.
-fn download_to(url: &str, path: &Path, silence: Duration, watch: &mut dyn FnMut(Event)) -> Result<()> {
+/// Downloads until the file is complete; continues a partial file at `path`.
+fn download_to(url: &str, path: &Path, read_timeout: Duration, watch: &mut dyn FnMut(Event)) -> Result<()> {
     let config = ureq::Agent::config_builder()
-        // A redirect must not lead from a protected address to an unprotected one.
+        // A redirect must not lead from https to http.
         .https_only(url.starts_with("https://"))
         .http_status_as_error(false)
         .timeout_connect(Some(Duration::from_secs(30)))
-        .timeout_recv_response(Some(silence))
+        .timeout_recv_response(Some(read_timeout))
         .user_agent(concat!("rtbench/", env!("CARGO_PKG_VERSION")))
         .build();
     let agent = ureq::Agent::new_with_config(config);
     let mut failures = 0;
     loop {
         let before = fs::metadata(path).map_or(0, |m| m.len());
-        match attempt(&agent, url, path, before, silence, watch)? {
+        match attempt(&agent, url, path, before, read_timeout, watch)? {
             Attempt::Done => return Ok(()),
             Attempt::Broken(reason) => {
                 let progress = fs::metadata(path).map_or(0, |m| m.len()) > before;
@@ -142,7 +144,7 @@ fn download_to(url: &str, path: &Path, silence: Duration, watch: &mut dyn FnMut(
                     let hint = "check the connection; the next attempt continues where this one ended";
                     return Err(Error::argument(url, format!("the download breaks off: {reason}"), hint));
                 }
-                watch(Event::Again(reason));
+                watch(Event::Retry(reason));
                 std::thread::sleep(Duration::from_millis(200 * u64::from(failures)));
             }
         }
@@ -151,17 +153,17 @@ fn download_to(url: &str, path: &Path, silence: Duration, watch: &mut dyn FnMut(
 
 enum Attempt {
     Done,
-    /// May go better next time.
+    /// The attempt failed for this reason; another one may succeed.
     Broken(String),
 }
 
-/// One request, from byte `have` on.
+/// Sends one request for the bytes from `have` on and appends the answer to the file at `path`.
 fn attempt(
     agent: &ureq::Agent,
     url: &str,
     path: &Path,
     have: u64,
-    silence: Duration,
+    read_timeout: Duration,
     watch: &mut dyn FnMut(Event),
 ) -> Result<Attempt> {
     let mut request = agent.get(url);
@@ -182,20 +184,22 @@ fn attempt(
     let (start, total) = match response.status().as_u16() {
         200 => (0, length),
         206 => {
-            // bytes FIRST-LAST/TOTAL
+            // The header reads `bytes FIRST-LAST/TOTAL`.
             let range = header("content-range").and_then(|text| text.strip_prefix("bytes "));
             let first = range.and_then(|r| r.split('-').next()).and_then(number);
             let total = range.and_then(|r| r.rsplit('/').next()).and_then(number);
             if first != Some(have) {
                 discard(path);
-                return Ok(Attempt::Broken("the server does not continue where it should".into()));
+                return Ok(Attempt::Broken("the server continues at another byte than requested".into()));
             }
             (have, total)
         }
         416 => {
-            // Nothing behind what is here: it is whole, or not what the server has. The hash will tell, of a fresh one.
+            // The partial file is at least as long as the server's: it is complete or another file. A new download
+            // decides, by its hash.
             discard(path);
-            return Ok(Attempt::Broken("the server has nothing to continue with: it begins again".into()));
+            let reason = "the server has no bytes after the partial file: the download starts from the beginning";
+            return Ok(Attempt::Broken(reason.into()));
         }
         status @ 500..=599 => return Ok(Attempt::Broken(format!("the server answers {status}"))),
         status => {
@@ -212,8 +216,8 @@ fn attempt(
     file.set_len(start).map_err(output)?;
     io::Seek::seek(&mut file, io::SeekFrom::Start(start)).map_err(output)?;
     let mut body = response.into_body().into_reader();
-    // ureq limits the time of a whole body only. So a thread of its own reads it, and is left behind if nothing comes: it
-    // ends when the connection does.
+    // ureq can limit only the time of a whole body. A separate thread reads the body, so that a stalled read can be
+    // abandoned; the thread ends with the connection.
     let (send, pieces) = sync_channel::<io::Result<Vec<u8>>>(16);
     std::thread::spawn(move || {
         let mut buffer = vec![0; 1 << 16];
@@ -233,12 +237,12 @@ fn attempt(
     let mut done = start;
     watch(Event::Downloaded(done, total));
     loop {
-        let piece = match pieces.recv_timeout(silence) {
+        let piece = match pieces.recv_timeout(read_timeout) {
             Ok(Ok(piece)) => piece,
             Ok(Err(e)) => return Ok(Attempt::Broken(one_line(&e))),
             Err(RecvTimeoutError::Disconnected) => break,
             Err(RecvTimeoutError::Timeout) => {
-                let reason = format!("the server has sent nothing for {} s", silence.as_secs_f64());
+                let reason = format!("the server has sent nothing for {} s", read_timeout.as_secs_f64());
                 return Ok(Attempt::Broken(reason));
             }
         };
@@ -252,13 +256,11 @@ fn attempt(
         watch(Event::Downloaded(done, total));
     }
     match total {
-        Some(total) if done < total => Ok(Attempt::Broken(format!("{done} of {total} bytes came"))),
+        Some(total) if done < total => {
+            Ok(Attempt::Broken(format!("the connection ended after {done} of {total} bytes")))
+        }
         _ => Ok(Attempt::Done),
     }
-}
-
-fn one_line(error: &dyn std::fmt::Display) -> String {
-    error.to_string().replace('\n', " ")
 }
 
 /// Unpacks the archive's one file and returns its SHA-256.
@@ -273,7 +275,7 @@ fn unpack(archive: &Path, wanted: &Archive, to: &Path) -> Result<String> {
         let path = entry.path().map_err(broken)?.into_owned();
         let inside = path.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
         if !inside {
-            return Err(refuse(format!("the archive wants to write to {:?}, outside of its folder", path)));
+            return Err(refuse(format!("the archive has the path {:?}, which leads outside of its folder", path)));
         }
         let plain: PathBuf = path.components().filter(|c| matches!(c, Component::Normal(_))).collect();
         if plain == wanted.member && found.is_none() {
@@ -287,7 +289,7 @@ fn unpack(archive: &Path, wanted: &Archive, to: &Path) -> Result<String> {
     found.ok_or_else(|| refuse(format!("the archive has no {}", wanted.member.display())))
 }
 
-/// Copies everything and returns its SHA-256; reading and writing fail with different errors.
+/// Copies a stream and returns its SHA-256, hexadecimal. `reading` and `writing` convert the errors of either side.
 fn copy_hashed(
     from: &mut dyn Read,
     mut to: impl Write,

@@ -5,10 +5,10 @@
 //!
 //! **Why all traversals agree.** All tests compute a distance along an axis as `(plane - origin) * inverse direction`.
 //! Subtraction and multiplication round monotonically, so a box inside another box has a computed interval inside the
-//! other's computed interval, without any epsilon. The ray/triangle tests make a triangle's distance part of that order:
-//! a hit counts only where the ray passes the triangle's own box by that same test, and its distance is clamped into the
-//! box's interval. So no enclosing node, cell or leaf can be culled by rounding while the triangle inside it is hit,
-//! and every structure finds exactly the hits of brute force.
+//! other's computed interval, without any epsilon. The ray/triangle tests make a triangle's distance part of that
+//! order: a hit counts only where the ray passes the triangle's own box by that same test, and its distance is clamped
+//! into the box's interval. So no enclosing node, cell or leaf can be culled by rounding while the triangle inside it
+//! is hit, and every structure finds exactly the hits of brute force.
 //!
 //! **Directions with a component of zero.** On such an axis distances to planes are `difference * 2^80`: far beyond
 //! every hit, or zero for a plane that the ray lies in. Zero would cut the interval at the ray's start, on one of the
@@ -20,10 +20,10 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec3, Vec3A, Vec4};
 
-/// No triangle, no record.
+/// Index of a triangle, node or triangle reference that does not exist.
 pub const MISS: u32 = u32::MAX;
 
-/// Farther than any hit. Not infinity: WGSL lets an implementation assume that there is none.
+/// A distance beyond every hit. It is finite because WGSL lets an implementation assume that there are no infinities.
 pub const T_MAX: f32 = 3.0e38;
 
 /// Replaces `1 / 0`, see [`inverse`]: 2^80. A coordinate of up to 1e13 multiplied by it is still a float.
@@ -43,9 +43,9 @@ pub const PLANE_SHIFT_MIN: f32 = 1.0 / (1 << 30) as f32;
 /// An axis-aligned box. Empty when `min > max` on any axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
-    /// Smallest corner.
+    /// The smallest coordinate on each axis.
     pub min: Vec3,
-    /// Largest corner.
+    /// The largest coordinate on each axis.
     pub max: Vec3,
 }
 
@@ -68,7 +68,7 @@ impl Aabb {
         self.max - self.min
     }
 
-    /// The middle.
+    /// The centre; NaN for [`Aabb::EMPTY`].
     pub fn center(self) -> Vec3 {
         (self.min + self.max) * 0.5
     }
@@ -95,30 +95,32 @@ impl Aabb {
     }
 }
 
-/// A ray with everything that the tests need. Distances along it are in units of `direction`'s length.
+/// A ray with the values that box and triangle tests precompute. Distances along it are in units of `direction`'s
+/// length.
 ///
 /// The fourth, hidden lane of the vectors is 1: box tests load whole 16-byte rows whose last word is an index, and an
 /// index read as a float is denormal, which costs a hundred cycles unless something ordinary is subtracted from it.
 #[derive(Clone, Copy, Debug)]
 pub struct Ray {
-    /// Where it starts.
+    /// The point at which the ray starts.
     pub origin: Vec3A,
-    /// Where it goes; need not be normalised.
+    /// The direction; need not be normalised.
     pub direction: Vec3A,
     /// `1 / direction` per component, see [`inverse`].
     pub inv_direction: Vec3A,
-    /// `origin`, but slightly higher on axes on which the direction is zero: the lower planes of boxes are compared
-    /// with it, so that a box whose lower plane the ray lies in contains it.
+    /// `origin`, shifted up by a small amount on axes on which the direction is zero. The lower planes of boxes are
+    /// compared with it, so that a ray in the lower plane of a box lies inside the box.
     pub origin_min: Vec3A,
-    /// `origin`, but slightly lower on axes on which the direction is zero: for the upper planes of boxes.
+    /// `origin`, shifted down by a small amount on axes on which the direction is zero. The upper planes of boxes are
+    /// compared with it.
     pub origin_max: Vec3A,
     /// Powers of two near the direction's components, see [`crate::workloads::trace::intersect::watertight`].
     pub scale: Vec3A,
-    /// `scale`, but zero on axes on which the direction is zero, the major axis excepted.
+    /// `scale`, but zero on axes on which the direction is zero; the major axis always has `scale`.
     pub shear: Vec3A,
     /// [`SLACK`] on axes on which the direction is zero, and zero on the others.
     pub slack: Vec3A,
-    /// The axis of the largest direction component, the first of equals.
+    /// The axis of the largest direction component; of equal components, the first.
     pub major: usize,
 }
 
@@ -162,8 +164,8 @@ impl Ray {
     }
 }
 
-/// `1 / direction` per component. A component so small that the quotient would reach [`INVERSE_OF_ZERO`] counts as zero
-/// and has that as its inverse.
+/// `1 / direction` per component. A component so small that the quotient would reach [`INVERSE_OF_ZERO`] counts as
+/// zero, and [`INVERSE_OF_ZERO`] is its inverse.
 #[inline]
 pub fn inverse(direction: Vec3A) -> Vec3A {
     let one = |d: f32| if d.abs() <= 1.0 / INVERSE_OF_ZERO { INVERSE_OF_ZERO } else { 1.0 / d };
@@ -176,7 +178,7 @@ fn power_below(x: f32) -> f32 {
     f32::from_bits(0x7f00_0000_u32.wrapping_sub(x.to_bits() & 0x7f80_0000))
 }
 
-/// A found hit.
+/// The nearest intersection of a ray, or [`Hit::NONE`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// Distance in units of the ray direction's length.
@@ -186,15 +188,15 @@ pub struct Hit {
 }
 
 impl Hit {
-    /// No hit.
+    /// The result for a ray that hits nothing.
     pub const NONE: Hit = Hit { t: T_MAX, triangle: MISS };
 }
 
-/// The interval of distances inside the box: `(near, far)`, empty when `near > far`.
+/// The interval of distances that lie inside the box, as `(near, far)`; it is empty when `near > far`.
 ///
-/// Slab test with min and max only, after Smits; the interval is not clamped to the ray's start.
+/// This is Smits's slab test with min and max only; the interval is not clamped to the ray's start.
 ///
-/// An origin exactly in a plane that the ray runs along is inside, at both sides of the box.
+/// A ray that lies in a border plane of the box is inside, at the lower and at the upper plane.
 #[inline(always)]
 pub fn ray_box(ray: &Ray, min: Vec3A, max: Vec3A) -> (f32, f32) {
     let a = (min - ray.origin_min) * ray.inv_direction;
@@ -202,22 +204,22 @@ pub fn ray_box(ray: &Ray, min: Vec3A, max: Vec3A) -> (f32, f32) {
     (a.min(b).max_element(), a.max(b).min_element())
 }
 
-/// A vertex as the device sees it: 32 bytes, two vec4 (SPEC section 1).
+/// A vertex as it is stored on the device: 32 bytes, two vec4.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C, align(16))]
 pub struct Vertex {
-    /// Position.
+    /// Position in the scene's coordinates in memory.
     pub position: Vec3,
-    /// Zero; WGSL's vec4.
+    /// Padding of WGSL's vec4; always zero.
     pub pad0: f32,
     /// Unit normal, or zero where none could be computed.
     pub normal: Vec3,
-    /// Zero; WGSL's vec4.
+    /// Padding of WGSL's vec4; always zero.
     pub pad1: f32,
 }
 
 impl Vertex {
-    /// A vertex.
+    /// A vertex with zero padding.
     pub fn new(position: Vec3, normal: Vec3) -> Vertex {
         Vertex { position, pad0: 0.0, normal, pad1: 0.0 }
     }

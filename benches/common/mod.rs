@@ -10,6 +10,7 @@ use obvhs::bvh2::Bvh2;
 use obvhs::triangle::Triangle;
 use parry3d::partitioning::BvhBuildStrategy;
 use rtbench::math::Vertex;
+use rtbench::record::statistics::{self, Estimate};
 use rtbench::scene::{Material, Scene, load};
 use rtbench::workloads::trace::common::prims;
 
@@ -126,56 +127,23 @@ impl BHShape<f32, 3> for Shape {
     }
 }
 
-/// Runs every contestant once a round, in an order that turns round every other time (ABBA), so that a machine that is
-/// busy or changes its clock disturbs all of them alike. Returns what each measured, by contestant and round.
+/// Measures every contestant once a round, in alternating order. Returns the values by contestant and round.
 pub fn interleaved(contestants: &mut [&mut dyn FnMut() -> f64], rounds: usize) -> Vec<Vec<f64>> {
     let mut times = vec![Vec::new(); contestants.len()];
     for round in 0..rounds {
-        let mut order: Vec<usize> = (0..contestants.len()).collect();
-        if round % 2 == 1 {
-            order.reverse();
-        }
-        for i in order {
+        for i in statistics::interleaved_order(contestants.len(), round) {
             times[i].push((contestants[i])());
         }
     }
     times
 }
 
-/// The median of the rounds' ratios, and the interval that an exact sign test gives at about 95 %.
-pub fn ratio(above: &[f64], below: &[f64]) -> (f64, f64, f64) {
-    let ratios: Vec<f64> = above.iter().zip(below).map(|(a, b)| a / b).collect();
-    let (low, high) = sign_test_interval(&ratios);
-    (median(&ratios), low, high)
-}
-
-/// In ascending order.
-pub fn sorted(values: &[f64]) -> Vec<f64> {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted
-}
-
-/// The middle value, or the mean of the two in the middle.
+/// The median of one contestant's values, of which there is at least one.
 pub fn median(values: &[f64]) -> f64 {
-    let sorted = sorted(values);
-    let n = sorted.len();
-    (sorted[(n - 1) / 2] + sorted[n / 2]) / 2.0
+    statistics::median(values).expect("a value")
 }
 
-/// The values between which the median lies with a probability of at least 95 % (all of them, if there are too few;
-/// of a thousand at most).
-pub fn sign_test_interval(values: &[f64]) -> (f64, f64) {
-    let sorted = sorted(values);
-    let n = sorted.len();
-    assert!(n <= 1000, "half to the power of the number of values must be a float above zero");
-    // P(at most k of n are below the median), k growing, until a tail would exceed 2.5 %.
-    let (mut k, mut tail, mut term) = (0, 0.0, 0.5_f64.powi(n as i32));
-    while tail + term <= 0.025 {
-        tail += term;
-        k += 1;
-        term *= (n - k + 1) as f64 / k as f64;
-    }
-    let k = k.saturating_sub(1);
-    (sorted[k], sorted[n - 1 - k])
+/// The median of the rounds' ratios with its interval; there is at least one round.
+pub fn ratio(above: &[f64], below: &[f64]) -> Estimate {
+    statistics::paired_ratio(above, below).expect("a round")
 }

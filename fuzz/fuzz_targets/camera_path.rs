@@ -1,4 +1,4 @@
-//! Camera paths, and what they show of a scene.
+//! Camera paths, and their views in a scene.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| rtbench_fuzz::camera_path(bytes));

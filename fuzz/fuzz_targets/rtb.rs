@@ -1,4 +1,5 @@
-//! The reader of caches. The checksum is made right first: no fuzzer would guess it, and behind it are the other checks.
+//! The reader of caches. The checksum is set to a valid value first, because a fuzzer would not guess it, and the other
+//! checks follow it.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {

@@ -1,9 +1,9 @@
-//! What the fuzz targets share: from bytes to everything that the program does with such a file.
+//! The shared part of the fuzz targets: loads bytes as the program loads a file.
 //!
-//! Bytes go through a file, since most readers look for others beside it, and since what lies behind the reader (checks,
-//! transforms, counts) is to be broken as well. A scene that is read must keep the invariants that everything relies on; what
-//! is refused must be refused in one line. Reading may take as much memory as in `tests/it/scene/mutation`: sixteen times the
-//! file and 64 MiB. Panics and hangs (`-timeout`) are the fuzzer's.
+//! The bytes are written to a file, because most readers search further files in its folder, and so that the steps
+//! after the reader (checks, transforms, counts) are tested as well. A scene that is read must keep its invariants; an
+//! error must be a single line. Reading may take as much memory as in `tests/it/scene/mutation`: sixteen times the file
+//! and 64 MiB. The fuzzer detects panics, and hangs by `-timeout`.
 
 use rtbench::Result;
 use rtbench::camera::CameraPath;
@@ -11,20 +11,20 @@ use rtbench::scene::{self, FORMATS, Scene};
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
-/// A folder for this process alone.
+/// A temporary folder of this process.
 static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| {
     let folder = std::env::temp_dir().join(format!("rtbench-fuzz-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder for the file");
     folder
 });
 
-/// What a camera path is held against.
+/// The scene in which camera paths are evaluated.
 static ROOM: LazyLock<Scene> = LazyLock::new(|| scene::load("room").expect("a built-in scene"));
 
-/// Bytes that reading may take beside sixteen times the file's.
+/// Memory in bytes that reading may take in addition to sixteen times the file's size.
 const BASE: u64 = 64 << 20;
 
-/// A file of these bytes; its path.
+/// Writes a file and returns its path.
 fn file(name: &str, bytes: &[u8]) -> String {
     let path = FOLDER.join(name);
     std::fs::write(&path, bytes).expect("a file can be written");
@@ -35,7 +35,7 @@ fn one_line<T>(result: Result<T>) -> Option<T> {
     result.inspect_err(|error| assert!(!error.to_string().contains('\n'), "more than one line: {error}")).ok()
 }
 
-/// Reads a file of so many bytes, and looks how much memory that takes at once.
+/// Runs a reader of a file of this size, and asserts that its peak of memory is within the limit.
 fn read<T>(file_bytes: usize, reader: impl FnOnce() -> Result<T>) -> Option<T> {
     let mut result = None;
     let counted = allocation_counter::measure(|| result = Some(reader()));
@@ -44,16 +44,16 @@ fn read<T>(file_bytes: usize, reader: impl FnOnce() -> Result<T>) -> Option<T> {
     result.and_then(one_line)
 }
 
-/// Loads these bytes as a scene of that extension.
+/// Loads these bytes as a scene file with this extension.
 pub fn scene(extension: &str, bytes: &[u8]) {
     assert!(FORMATS.iter().any(|(known, ..)| *known == extension), "there is no reader of .{extension}");
     let path = file(&format!("scene.{extension}"), bytes);
     if let Some(scene) = read(bytes.len(), || scene::load(&path)) {
-        scene.check().expect("what is read is sound");
+        scene.check().expect("a scene that is read is valid");
     }
 }
 
-/// Loads these bytes as a camera path and goes along it.
+/// Loads these bytes as a camera path and evaluates its views.
 pub fn camera_path(bytes: &[u8]) {
     let path = file("path.toml", bytes);
     if let Some(path) = read(bytes.len(), || CameraPath::load(&path)) {

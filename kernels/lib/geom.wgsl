@@ -41,7 +41,7 @@ fn on_axis(p: vec3<f32>, axis: u32) -> f32 {
     return select(select(p.z, p.y, axis == 1u), p.x, axis == 0u);
 }
 
-fn unit(v: vec3<f32>) -> vec3<f32> {
+fn normalize3(v: vec3<f32>) -> vec3<f32> {
     return v / sqrt(dot3(v, v));
 }
 
@@ -57,7 +57,7 @@ fn power_below(x: vec3<f32>) -> vec3<f32> {
     return bitcast<vec3<f32>>(vec3<u32>(0x7f000000u) - (bitcast<vec3<u32>>(x) & vec3<u32>(0x7f800000u)));
 }
 
-fn ray_along(origin: vec3<f32>, direction: vec3<f32>) -> Ray {
+fn make_ray(origin: vec3<f32>, direction: vec3<f32>) -> Ray {
     let inv = vec3<f32>(inverse1(direction.x), inverse1(direction.y), inverse1(direction.z));
     let zero = vec3<f32>(0.0, 0.0, 0.0);
     let parallel = inv == vec3<f32>(INVERSE_OF_ZERO);

@@ -2,8 +2,9 @@
 
 @group(0) @binding(1) var<storage, read> vertices: array<Vertex>;
 @group(0) @binding(2) var<storage, read> triangle_refs: array<vec4<u32>>;
-@group(0) @binding(6) var<storage, read> nodes: array<Node>; // a BVH's
-@group(0) @binding(6) var<storage, read> pairs: array<vec2<u32>>; // or a kd-tree's nodes, or a grid's cells
+// Nodes or cells, of which a structure has one kind: 16 bytes at a time, or 8
+@group(0) @binding(6) var<storage, read> nodes16: array<vec4<u32>>;
+@group(0) @binding(6) var<storage, read> nodes8: array<vec2<u32>>;
 
 fn read_vertex(i: u32) -> Vertex {
     return vertices[i];
@@ -17,10 +18,10 @@ fn read_triangle_ref(i: u32) -> vec4<u32> {
     return triangle_refs[i];
 }
 
-fn read_node(i: u32) -> Node {
-    return nodes[i];
+fn read_node16(i: u32) -> vec4<u32> {
+    return nodes16[i];
 }
 
-fn read_pair(i: u32) -> vec2<u32> {
-    return pairs[i];
+fn read_node8(i: u32) -> vec2<u32> {
+    return nodes8[i];
 }

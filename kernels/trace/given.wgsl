@@ -3,7 +3,7 @@
 
 //!include lib/geom.wgsl
 //!include trace/scene.wgsl
-//!include lib/count_off.wgsl
+//!slot counting
 
 var<private> lane: u32;
 
@@ -36,7 +36,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     let index = group.x * GROUP_SIZE + local_index;
     let alive = index < job.rays;
     let source = given[min(index, job.rays - 1u)];
-    let ray = ray_along(source.origin.xyz, source.direction.xyz);
+    let ray = make_ray(source.origin.xyz, source.direction.xyz);
     var hit = GivenHit(T_MAX, MISS);
     if (ANY_HIT) {
         if (any_hit(ray, T_MAX, alive)) {

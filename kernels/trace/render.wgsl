@@ -44,7 +44,7 @@ const REFLECTED: u32 = 2u;
 
 // Through a point of the image, in pixels from its top left corner.
 fn primary_ray(point: vec2<f32>) -> Ray {
-    return ray_along(frame.origin, unit(frame.corner + frame.right * point.x + frame.down * point.y));
+    return make_ray(frame.origin, normalize3(frame.corner + frame.right * point.x + frame.down * point.y));
 }
 
 // Consecutive invocations lie in squares (Morton order) as far as the group's shape allows, so that those that share an
@@ -87,9 +87,10 @@ fn row_of_groups(y: u32, rows: u32) -> u32 {
     return place * THREADS + thread;
 }
 
-// Where the ray of a pixel goes through the image: its middle, or with FOUR_RAYS one of four points for the whole
-// work-group. These lie at a quarter and three quarters of the image's sides: the same rays, whatever its resolution.
-fn seen_through(column: u32, row: u32) -> vec2<f32> {
+// The position in the image that the ray of a pixel goes through: the middle of the pixel, or with FOUR_RAYS one of
+// four points for the whole work-group. These lie at a quarter and three quarters of the image's sides, so that the
+// rays are the same at every resolution.
+fn sample_position(column: u32, row: u32) -> vec2<f32> {
     if (FOUR_RAYS) {
         let x = f32(frame.width) * (0.25 + 0.5 * f32(column / GROUP_WIDTH & 1u));
         let y = f32(frame.height) * (0.25 + 0.5 * f32(row / GROUP_HEIGHT & 1u));
@@ -98,8 +99,8 @@ fn seen_through(column: u32, row: u32) -> vec2<f32> {
     return vec2<f32>(f32(column) + 0.5, f32(row) + 0.5);
 }
 
-// The light, or the point towards it at the greatest distance at which a shadow ray starts: nothing lies beyond, and rays
-// that start at a distant light could not tell the point from its neighbours.
+// The light, or the point towards it at the greatest distance at which a shadow ray starts: nothing lies beyond, and
+// rays that start at a distant light could not tell the point from its neighbours.
 fn shadow_start(light: vec3<f32>, point: vec3<f32>) -> vec3<f32> {
     let way = light - point;
     let distance = sqrt(dot3(way, way));
@@ -119,7 +120,7 @@ fn main(
     let inside = band_column < frame.columns && band_row < frame.rows;
     let column = frame.first_column + band_column;
 
-    var ray = primary_ray(seen_through(column, frame.first_row + band_row));
+    var ray = primary_ray(sample_position(column, frame.first_row + band_row));
     var alive = inside;
     var colour = vec3<f32>(0.0, 0.0, 0.0);
     var weight = 1.0; // product of the reflectivities on the way
@@ -133,11 +134,11 @@ fn main(
 
         // Find the nearest hit
         if (alive) {
-            count_ray(select(REFLECTED, PRIMARY, bounce == 0u));
+            begin_ray(select(REFLECTED, PRIMARY, bounce == 0u));
         }
         let triangle_ref = nearest_hit(ray, alive);
 
-        // Make it a surface; whatever is missed shows the background and is done
+        // Make it a surface; a ray that misses shows the background and is done
         var surface: Surface;
         if (alive) {
             if (triangle_ref == MISS) {
@@ -163,12 +164,12 @@ fn main(
             if (SHADOWS) {
                 // Between light and point, of which one is at distance 0 and the other at distance 1
                 if (alive) {
-                    count_ray(SHADOW);
+                    begin_ray(SHADOW);
                 }
                 let position = light.position.xyz;
                 let start = select(shadow_start(position, surface.point), surface.point, TO_LIGHT);
                 let end = select(surface.point, position, TO_LIGHT);
-                let shadow = ray_along(start, end - start);
+                let shadow = make_ray(start, end - start);
                 lit = !any_hit(shadow, 1.0, alive) && alive;
             }
             if (lit) {

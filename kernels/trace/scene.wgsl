@@ -19,54 +19,49 @@ struct Light {
     colour: vec4<f32>,
 }
 
-// A BVH's node.
-struct Node {
-    lo: vec3<f32>,
-    reference: u32,
-    hi: vec3<f32>,
-    count: u32, // triangle references of a leaf; 0 for an inner node
-}
+// The structure's own uniform is at binding 7, declared by its folder.
 
-// What the structure needs beside its nodes; filled by src/workloads/trace/gpu/upload.rs from the built structure.
-struct Structure {
-    bounds_min: vec3<f32>,
-    cell_size: f32,
-    bounds_max: vec3<f32>,
-    triangle_refs: u32,
-    resolution: vec3<u32>,
-    pad: u32,
-    octants: array<Octant, 8>,
-}
-
-// Grid traversal's constants by the signs of the ray's direction (bit 0: x is negative, 1: y, 2: z).
-struct Octant {
-    step: vec4<i32>, // +1 or -1 per axis
-    end: vec4<i32>,  // first cell index outside the grid per axis
-}
-
-@group(0) @binding(7) var<uniform> structure: Structure;
-
-// read_vertex, read_position, read_triangle_ref (three vertices and the triangle's index), read_node and read_pair
+// read_vertex, read_position, read_triangle_ref (three vertices and the triangle's index), and for a structure's nodes
+// read_node16 or read_node8
 //!slot memory
 
-// The nearest hit so far. Of equal distances the lower triangle index wins, so that the order of tests is no matter.
+// The nearest hit so far. Of equal distances the lower triangle index wins, so that the order of tests does not matter.
 struct Best {
     t: f32,
-    triangle_ref: u32,
+    triangle_ref: u32, // MISS as long as nothing is hit, while `t` is the limit of the search
 }
 
-fn no_best() -> Best {
-    return Best(T_MAX, MISS);
-}
-
+// Replaces `best` by a hit that is nearer.
 fn test_triangle(ray: Ray, triangle_ref: u32, best: ptr<function, Best>) {
     let r = read_triangle_ref(triangle_ref);
     let hit = intersect(ray, read_position(r.x), read_position(r.y), read_position(r.z));
     if (hit.t <= (*best).t) {
-        if (hit.t < (*best).t || r.w < read_triangle_ref((*best).triangle_ref).w) {
+        if (hit.t < (*best).t || has_lower_index(r.w, (*best).triangle_ref)) {
             *best = Best(hit.t, triangle_ref);
         }
     }
+}
+
+// True if triangle `index` comes before the one of the best hit; nothing exactly at the limit is a hit.
+fn has_lower_index(index: u32, best: u32) -> bool {
+    return best != MISS && index < read_triangle_ref(best).w;
+}
+
+// Tests the triangles of a leaf or cell for the nearest hit; with `any`, only up to the first one that is hit. True if
+// that ends the search.
+fn test_triangles(ray: Ray, first: u32, count: u32, any: bool, best: ptr<function, Best>) -> bool {
+    for (var i = first; i < first + count; i += 1u) {
+        count_test();
+        if (any) {
+            if (triangle_occludes(ray, i, (*best).t)) {
+                (*best).triangle_ref = i;
+                return true;
+            }
+        } else {
+            test_triangle(ray, i, best);
+        }
+    }
+    return false;
 }
 
 // True if the triangle is hit at a distance below `limit`.
@@ -74,4 +69,16 @@ fn triangle_occludes(ray: Ray, triangle_ref: u32, limit: f32) -> bool {
     let r = read_triangle_ref(triangle_ref);
     let hit = intersect(ray, read_position(r.x), read_position(r.y), read_position(r.z));
     return hit.t < limit;
+}
+
+// Every traversal is one function `traverse(ray, limit, any, alive) -> u32`: the triangle reference of the nearest hit
+// before `limit`, with `any` of some hit there, or MISS. It is called with constants for `any`, which drivers fold.
+
+fn nearest_hit(ray: Ray, alive: bool) -> u32 {
+    return traverse(ray, T_MAX, false, alive);
+}
+
+// True if anything is hit at a distance below `limit`.
+fn any_hit(ray: Ray, limit: f32, alive: bool) -> bool {
+    return traverse(ray, limit, true, alive) != MISS;
 }

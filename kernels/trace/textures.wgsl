@@ -1,15 +1,15 @@
-// Scene and structure in textures, whose texels are their words, 16 bytes in each (8 in one of pairs), row by row.
+// Scene and structure in textures, whose texels are their words, 16 bytes in each (8 in one of nodes8), row by row.
 // trace/buffers.wgsl reads the same from storage buffers.
 //
 // A software driver reads a texel of four words by one vector load per ray, but a storage buffer word by word, with a
 // branch for each ray: on lavapipe this makes bvh-stack about 1.8 times as fast.
 
-alias Words = texture_storage_2d<rgba32uint, read>;
+alias Texels16 = texture_storage_2d<rgba32uint, read>;
 
-@group(0) @binding(1) var vertices: Words;
-@group(0) @binding(2) var triangle_refs: Words;
-@group(0) @binding(6) var nodes: Words; // a BVH's
-@group(0) @binding(6) var pairs: texture_storage_2d<rg32uint, read>; // or a kd-tree's nodes, or a grid's cells
+@group(0) @binding(1) var vertices: Texels16;
+@group(0) @binding(2) var triangle_refs: Texels16;
+@group(0) @binding(6) var nodes16: Texels16;
+@group(0) @binding(6) var nodes8: texture_storage_2d<rg32uint, read>;
 
 fn texel(i: u32) -> vec2<u32> {
     return vec2<u32>(i % TEXTURE_WIDTH, i / TEXTURE_WIDTH);
@@ -29,12 +29,10 @@ fn read_triangle_ref(i: u32) -> vec4<u32> {
     return textureLoad(triangle_refs, texel(i));
 }
 
-fn read_node(i: u32) -> Node {
-    let low = textureLoad(nodes, texel(i * 2u));
-    let high = textureLoad(nodes, texel(i * 2u + 1u));
-    return Node(bitcast<vec3<f32>>(low.xyz), low.w, bitcast<vec3<f32>>(high.xyz), high.w);
+fn read_node16(i: u32) -> vec4<u32> {
+    return textureLoad(nodes16, texel(i));
 }
 
-fn read_pair(i: u32) -> vec2<u32> {
-    return textureLoad(pairs, texel(i)).xy;
+fn read_node8(i: u32) -> vec2<u32> {
+    return textureLoad(nodes8, texel(i)).xy;
 }

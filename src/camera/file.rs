@@ -1,9 +1,9 @@
-//! Reading a camera path file (TOML); the format is described in `camera-paths/README.md`.
+//! Reads a camera path file (TOML). `camera-paths/README.md` describes the format.
 
+use super::keyframes::{Aim, Key, KeyframePath};
 use super::orbit::{LightOrbit, Orbit};
-use super::path::{CameraPath, Kind, PathLight};
-use super::recorded::{Recorded, Recording};
-use super::walk::{Aim, Key, Walk};
+use super::path::{CameraPath, Motion, PathLight};
+use super::recorded::{RecordedFrames, RecordedPose};
 use crate::error::{Error, Result};
 use crate::scene::placement::MAX_COORDINATE;
 use glam::{DVec3, Vec3};
@@ -12,7 +12,7 @@ use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
 
-/// Most frames that a path may have: views are held in memory.
+/// The largest number of frames of a path. All views of a path are held in memory.
 const MAX_FRAMES: usize = 1_000_000;
 
 #[derive(Deserialize)]
@@ -26,7 +26,7 @@ struct File {
     up: Option<Spanned<[f32; 3]>>,
     #[serde(default)]
     lights: Vec<FileLight>,
-    // Orbits.
+    // Keys of orbits.
     distance: Option<Spanned<f32>>,
     height: Option<Spanned<f32>>,
     start: Option<Spanned<f32>>,
@@ -34,10 +34,10 @@ struct File {
     light_height: Option<Spanned<f32>>,
     light_start: Option<Spanned<f32>>,
     light_colour: Option<Spanned<[f32; 3]>>,
-    // Walks.
+    // Keys of walks.
     relative: Option<Spanned<bool>>,
     keys: Option<Vec<Spanned<FileKey>>>,
-    // Recorded frames: time, position, direction, up.
+    // Recorded frames; a row is time, position, direction, up.
     poses: Option<Spanned<Vec<Spanned<[f64; 10]>>>>,
 }
 
@@ -60,20 +60,23 @@ struct FileKey {
     up: Option<Spanned<[f32; 3]>>,
 }
 
-/// The file's name and text: turns a span into a line.
-struct Source<'a> {
+/// Name and text of the file; converts spans of bytes into line numbers.
+struct PathText<'a> {
     place: &'a str,
     text: &'a str,
 }
 
-impl Source<'_> {
+impl PathText<'_> {
     fn fault(&self, span: Range<usize>, problem: impl Into<String>, hint: impl Into<String>) -> Error {
         let before = &self.text.as_bytes()[..span.start.min(self.text.len())];
         let line = 1 + before.iter().filter(|&&b| b == b'\n').count();
         Error::file(Path::new(self.place), Some(line), problem, hint)
     }
 
-    /// The value or a default, held against a range (bounds excluded).
+    /// The given value or `default`.
+    ///
+    /// # Errors
+    /// The value does not lie inside `range` (both bounds excluded).
     fn number(&self, value: &Option<Spanned<f32>>, key: &str, default: f32, range: Range<f32>) -> Result<f32> {
         let Some(given) = value else { return Ok(default) };
         let number = *given.get_ref();
@@ -92,7 +95,7 @@ impl Source<'_> {
         Err(self.fault(value.span(), format!("{key} is not finite or too large"), "give three plain numbers"))
     }
 
-    /// A point of the scene's file, or of its bounds.
+    /// A point in the coordinates of the scene's file, or relative to the scene's bounds.
     fn point(&self, value: &Spanned<[f64; 3]>, key: &str) -> Result<DVec3> {
         let point = DVec3::from(*value.get_ref());
         if point.is_finite() && point.abs().max_element() <= MAX_COORDINATE {
@@ -101,7 +104,7 @@ impl Source<'_> {
         Err(self.fault(value.span(), format!("{key} is not finite or too large"), "give three plain numbers"))
     }
 
-    /// A vector that points somewhere.
+    /// The unit vector of a direction that is not zero.
     fn direction(&self, value: &Spanned<[f32; 3]>, key: &str) -> Result<Vec3> {
         let vector = self.vector(value, key)?.normalize_or_zero();
         if vector == Vec3::ZERO {
@@ -119,7 +122,7 @@ impl Source<'_> {
         Ok(colour)
     }
 
-    /// A key that this kind of path does not have.
+    /// Refuses a key that this kind of path does not have.
     fn refuse<T>(&self, value: &Option<Spanned<T>>, key: &str, kind: &str) -> Result<()> {
         match value {
             None => Ok(()),
@@ -130,9 +133,9 @@ impl Source<'_> {
     }
 }
 
-/// Reads a path. `name` is its own, `place` stands in errors.
+/// Parses a path. `name` becomes the path's name; errors name `place` as the file.
 pub(super) fn parse(name: &str, place: &str, text: &str) -> Result<CameraPath> {
-    let source = Source { place, text };
+    let source = PathText { place, text };
     let file: File = toml::from_str(text).map_err(|e| {
         let problem = e.message().lines().collect::<Vec<_>>().join(" ");
         source.fault(e.span().unwrap_or(0..0), problem, "camera-paths/README.md describes the format")
@@ -150,11 +153,11 @@ pub(super) fn parse(name: &str, place: &str, text: &str) -> Result<CameraPath> {
     };
     let up = file.up.as_ref().map_or(Ok(Vec3::Y), |up| source.direction(up, "up"))?;
     let field_of_view = source.number(&file.field_of_view, "field_of_view", 45.0, 0.0..180.0)?;
-    let kind = match file.kind.get_ref().as_str() {
+    let motion = match file.kind.get_ref().as_str() {
         "orbit" => {
             refuse_walk(&source, &file, "orbit")?;
             refuse_light(&source, &file, "orbit")?;
-            Kind::Orbit(orbit(&source, &file)?)
+            Motion::Orbit(orbit(&source, &file)?)
         }
         "light-orbit" => {
             refuse_walk(&source, &file, "light-orbit")?;
@@ -162,7 +165,7 @@ pub(super) fn parse(name: &str, place: &str, text: &str) -> Result<CameraPath> {
                 let problem = "`lights` have no meaning for kind light-orbit";
                 return Err(source.fault(light.position.span(), problem, "its one light is given by light_distance"));
             }
-            Kind::LightOrbit(LightOrbit {
+            Motion::LightOrbit(LightOrbit {
                 camera: orbit(&source, &file)?,
                 light_distance: source.number(&file.light_distance, "light_distance", 2.0, -1e6..1e6)?,
                 light_height: source.number(&file.light_height, "light_height", 1.0, -1e6..1e6)?,
@@ -173,7 +176,7 @@ pub(super) fn parse(name: &str, place: &str, text: &str) -> Result<CameraPath> {
         "walk" => {
             refuse_orbit(&source, &file, "walk")?;
             refuse_light(&source, &file, "walk")?;
-            Kind::Walk(walk(&source, &file, up)?)
+            Motion::Keyframes(keyframes(&source, &file, up)?)
         }
         "frames" => {
             refuse_walk(&source, &file, "frames")?;
@@ -183,7 +186,7 @@ pub(super) fn parse(name: &str, place: &str, text: &str) -> Result<CameraPath> {
             source.refuse(&file.up, "up", "frames: each pose has its own")?;
             let recorded = recorded(&source, &file)?;
             frames = recorded.poses.len();
-            Kind::Recorded(recorded)
+            Motion::Recorded(recorded)
         }
         other => {
             let hint = "kinds are orbit, light-orbit, walk, frames";
@@ -203,34 +206,34 @@ pub(super) fn parse(name: &str, place: &str, text: &str) -> Result<CameraPath> {
         frames,
         field_of_view,
         up,
-        kind,
+        motion,
         lights: lights.collect::<Result<_>>()?,
         hash: blake3::hash(text.as_bytes()).to_hex().to_string(),
         place: place.to_owned(),
     })
 }
 
-fn refuse_walk(source: &Source, file: &File, kind: &str) -> Result<()> {
+fn refuse_walk(source: &PathText, file: &File, kind: &str) -> Result<()> {
     if let Some(key) = file.keys.as_ref().and_then(|keys| keys.first()) {
         return Err(source.fault(key.span(), format!("`keys` have no meaning for kind {kind}"), "use kind = \"walk\""));
     }
     source.refuse(&file.relative, "relative", kind)
 }
 
-fn refuse_orbit(source: &Source, file: &File, kind: &str) -> Result<()> {
+fn refuse_orbit(source: &PathText, file: &File, kind: &str) -> Result<()> {
     source.refuse(&file.distance, "distance", kind)?;
     source.refuse(&file.height, "height", kind)?;
     source.refuse(&file.start, "start", kind)
 }
 
-fn refuse_light(source: &Source, file: &File, kind: &str) -> Result<()> {
+fn refuse_light(source: &PathText, file: &File, kind: &str) -> Result<()> {
     source.refuse(&file.light_distance, "light_distance", kind)?;
     source.refuse(&file.light_height, "light_height", kind)?;
     source.refuse(&file.light_start, "light_start", kind)?;
     source.refuse(&file.light_colour, "light_colour", kind)
 }
 
-fn orbit(source: &Source, file: &File) -> Result<Orbit> {
+fn orbit(source: &PathText, file: &File) -> Result<Orbit> {
     let distance = match &file.distance {
         None => None,
         given => Some(source.number(given, "distance", 0.0, 0.0..1e6)?),
@@ -239,7 +242,7 @@ fn orbit(source: &Source, file: &File) -> Result<Orbit> {
     Ok(Orbit { distance, height, start: source.number(&file.start, "start", 0.0, -1e6..1e6)? })
 }
 
-fn recorded(source: &Source, file: &File) -> Result<Recorded> {
+fn recorded(source: &PathText, file: &File) -> Result<RecordedFrames> {
     let rows = file.poses.as_ref().map(Spanned::get_ref).filter(|rows| (1..=MAX_FRAMES).contains(&rows.len()));
     let Some(rows) = rows else {
         let problem = "recorded frames need `poses`, a row for each";
@@ -250,26 +253,26 @@ fn recorded(source: &Source, file: &File) -> Result<Recorded> {
         let position = DVec3::from_slice(&row.get_ref()[1..4]);
         let vector = |at: usize| DVec3::from_slice(&row.get_ref()[at..at + 3]).as_vec3();
         let fault = |problem: &str| source.fault(row.span(), problem, "repair the row");
-        // What is a unit vector stays as it is, to the bit
+        // A unit vector keeps its bits.
         let unit = |v: Vec3| if v.is_normalized() { v } else { v.normalize_or_zero() };
         let (time, direction, up) = (row.get_ref()[0], unit(vector(4)), unit(vector(7)));
         let sound = time.is_finite() && position.is_finite();
         if !sound || position.abs().max_element() > MAX_COORDINATE {
             return Err(fault("time or position is not finite or too large"));
         }
-        // Zero and what is not finite fail here as well
+        // This comparison is also false for zero and for NaN.
         if !(direction.cross(up).length() >= 1e-3) {
             return Err(fault("direction or up is zero, or the camera looks along its up vector"));
         }
-        Ok(Recording::InFile { position, time, direction, up })
+        Ok(RecordedPose::InFile { position, time, direction, up })
     };
-    Ok(Recorded { poses: rows.iter().map(pose).collect::<Result<_>>()? })
+    Ok(RecordedFrames { poses: rows.iter().map(pose).collect::<Result<_>>()? })
 }
 
-fn walk(source: &Source, file: &File, up: Vec3) -> Result<Walk> {
+fn keyframes(source: &PathText, file: &File, up: Vec3) -> Result<KeyframePath> {
     let given = file.keys.as_deref().unwrap_or_default();
     if given.len() < 2 {
-        let problem = format!("a walk needs two keys or more, here are {}", given.len());
+        let problem = format!("a walk needs two keys or more, but there are {}", given.len());
         let span = given.first().map_or(file.kind.span(), Spanned::span);
         return Err(source.fault(span, problem, "add [[keys]] with time, position and target"));
     }
@@ -279,7 +282,7 @@ fn walk(source: &Source, file: &File, up: Vec3) -> Result<Walk> {
         let time = *key.time.get_ref();
         let sound = time.is_finite() && time.abs() < 1e9;
         if !sound || keys.last().is_some_and(|before| time <= before.time) {
-            let problem = format!("time = {time} is not greater than the key's before it");
+            let problem = format!("time = {time} is not greater than the time of the key before");
             return Err(source.fault(key.time.span(), problem, "the keys' times must increase"));
         }
         let position = source.point(&key.position, "position")?;
@@ -287,7 +290,7 @@ fn walk(source: &Source, file: &File, up: Vec3) -> Result<Walk> {
             (Some(target), None) => {
                 let at = source.point(target, "target")?;
                 if at == position {
-                    let problem = "the camera stands on its target";
+                    let problem = "the camera's position is its target";
                     return Err(source.fault(target.span(), problem, "move one of them"));
                 }
                 Aim::Target(at)
@@ -299,7 +302,7 @@ fn walk(source: &Source, file: &File, up: Vec3) -> Result<Walk> {
             }
         };
         let own_up = key.up.as_ref().map(|up| source.direction(up, "up")).transpose()?;
-        // In relative coordinates a target's direction is known only with the scene: views() looks again.
+        // In relative coordinates the direction to a target depends on the scene; `views` checks it again.
         let along = match aim {
             Aim::Target(target) if !file.relative.as_ref().is_some_and(|r| *r.get_ref()) => {
                 (target - position).normalize_or_zero().as_vec3()
@@ -315,5 +318,5 @@ fn walk(source: &Source, file: &File, up: Vec3) -> Result<Walk> {
         }
         keys.push(Key { time, position, aim, up: own_up });
     }
-    Ok(Walk { keys, relative: file.relative.as_ref().is_some_and(|r| *r.get_ref()) })
+    Ok(KeyframePath { keys, relative: file.relative.as_ref().is_some_and(|r| *r.get_ref()) })
 }

@@ -1,35 +1,37 @@
-//! Cameras, and the paths they (or the light) travel: files in `camera-paths/`, see the README there.
+//! Cameras, and the paths of cameras and lights. `camera-paths/README.md` describes the files.
 
 mod file;
+mod keyframes;
 mod orbit;
 mod path;
 mod recorded;
-mod walk;
 
 use crate::scene::Light;
 use glam::Vec3;
-pub use path::{CameraPath, descriptions, names};
-pub use recorded::{to_csv, to_placed_csv, to_placed_toml, to_toml};
+pub(crate) use path::descriptions;
+pub use path::{CameraPath, names};
+pub use recorded::{to_csv, to_toml};
+pub(crate) use recorded::{to_placed_csv, to_placed_toml};
 
-/// A pinhole camera.
+/// A pinhole camera, in the scene's coordinates in memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Eye.
+    /// The centre of projection.
     pub position: Vec3,
-    /// Unit vector to the image's middle.
+    /// Unit vector to the centre of the image.
     pub direction: Vec3,
-    /// Roughly up; not parallel to `direction`.
+    /// The up vector; need not be perpendicular to `direction`, but must not be parallel to it.
     pub up: Vec3,
     /// Vertical field of view in degrees, between 0 and 180.
     pub field_of_view: f32,
 }
 
-/// What one frame shows: a camera and the lights at that moment.
+/// The camera and the lights of one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
-    /// The camera.
+    /// The camera of this frame.
     pub camera: Camera,
-    /// All lights of this frame.
+    /// All lights of this frame; they replace the scene's.
     pub lights: Vec<Light>,
 }
 
@@ -37,18 +39,18 @@ pub struct View {
 /// for pixel `(x, y)` counted from the top left.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PixelGrid {
-    /// Eye.
+    /// The origin of all primary rays.
     pub origin: Vec3,
-    /// From the eye to the image plane's top left corner.
+    /// The vector from the origin to the top left corner of the image plane.
     pub corner: Vec3,
-    /// One pixel to the right.
+    /// The vector from a pixel to its right neighbour on the image plane.
     pub right: Vec3,
-    /// One pixel down.
+    /// The vector from a pixel to the one below it on the image plane.
     pub down: Vec3,
 }
 
 impl Camera {
-    /// Rays for an image of `width` x `height` square pixels.
+    /// The pixel grid of an image of `width` x `height` square pixels.
     pub fn pixel_grid(&self, width: u32, height: u32) -> PixelGrid {
         let right = self.direction.cross(self.up).normalize();
         let up = right.cross(self.direction).normalize();

@@ -1,4 +1,5 @@
-//! Object orbit and light orbit, in units of the bounds' radius (half the diagonal), around the bounds' centre.
+//! Orbits of the camera and of the light around the centre of the bounds. Lengths are in radii of the bounds (half the
+//! diagonal).
 
 use super::Camera;
 use crate::math::Aabb;
@@ -8,50 +9,51 @@ use glam::Vec3;
 /// The camera turns once around the scene and looks at its centre.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Orbit {
-    /// From the axis through the centre to the camera, in radii; `None`: as near as the whole scene stays in view from
-    /// every side.
+    /// Distance of the camera from the axis through the centre, in radii; `None` chooses the smallest distance at which
+    /// the whole scene is in view in all frames.
     pub distance: Option<f32>,
-    /// Above the centre, in radii.
+    /// Height above the centre, in radii.
     pub height: f32,
-    /// Where the turn starts, in degrees: 0 looks along -z (with y up), 90 along -x.
+    /// Angle of the first frame in degrees: at 0 the camera looks along -z (with y up), at 90 along -x.
     pub start: f32,
 }
 
 /// A fixed camera; the light turns once around the scene.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LightOrbit {
-    /// The camera: the first frame of this orbit.
+    /// The camera stays at the first frame of this orbit.
     pub camera: Orbit,
-    /// From the axis to the light, in radii.
+    /// Distance of the light from the axis, in radii.
     pub light_distance: f32,
-    /// Above the centre, in radii.
+    /// Height of the light above the centre, in radii.
     pub light_height: f32,
-    /// Where its turn starts, in degrees.
+    /// Angle of the light in the first frame, in degrees.
     pub light_start: f32,
     pub light_colour: Vec3,
 }
 
-/// An orbit around given bounds.
+/// An orbit around the bounds of a scene. Lengths are in the scene's units in memory.
 pub(super) struct Fitted {
     center: Vec3,
     up: Vec3,
-    /// In units of the scene.
     distance: f32,
     height: f32,
     start: f32,
     field_of_view: f32,
 }
 
-/// Points per ring at which a fit is tried, and rings from the bottom to the top.
+/// Number of points per ring at which a distance is checked.
 const AROUND: usize = 48;
+/// Number of slices of the scene along the axis.
 const RINGS: usize = 64;
-/// What a fitted image leaves free at its border, as a factor of the half image.
+/// Share of the half image that a fitted scene may cover; the rest is a margin.
 const MARGIN: f32 = 0.96;
 
 /// The horizontal unit vector at an angle (degrees) around `up`.
 fn around(up: Vec3, degrees: f32) -> Vec3 {
     let up = up.normalize();
-    // The axis that is farthest from up, z before x before y, gives angle 0; for y up that is z.
+    // The coordinate axis that is most nearly perpendicular to up (of equal ones, z before x before y) has angle 0; for
+    // y up that is z.
     let front = [Vec3::Z, Vec3::X, Vec3::Y].into_iter().min_by(|a, b| a.dot(up).abs().total_cmp(&b.dot(up).abs()));
     let front = front.unwrap_or(Vec3::Z);
     let front = (front - up * front.dot(up)).normalize();
@@ -61,7 +63,7 @@ fn around(up: Vec3, degrees: f32) -> Vec3 {
 }
 
 impl Orbit {
-    /// Fixes the orbit for this scene. The image is taken to be square.
+    /// The orbit around this scene, for a square image.
     pub fn fit(&self, scene: &Scene, bounds: Aabb, up: Vec3, field_of_view: f32) -> Fitted {
         let radius = bounds.diagonal() * 0.5;
         let mut fitted = Fitted {
@@ -76,7 +78,7 @@ impl Orbit {
             Some(distance) => distance * radius,
             None => {
                 let rings = fitted.rings(scene, radius);
-                // Halving: from beyond where the bounding sphere fits, down to the scene's edge.
+                // Bisection between the radius of the scene and a distance at which the bounding sphere is in view.
                 let (mut near, mut far) = (radius, radius * (1.0 + 2.0 / (field_of_view.to_radians() * 0.5).sin()));
                 for _ in 0..24 {
                     fitted.distance = (near + far) * 0.5;
@@ -90,7 +92,7 @@ impl Orbit {
 }
 
 impl Fitted {
-    /// The camera after a share of the turn.
+    /// The camera after a share of the turn, 0 to 1.
     pub fn camera(&self, share: f32) -> Camera {
         let outward = around(self.up, self.start + share * 360.0);
         let offset = outward * self.distance + self.up * self.height;
@@ -102,8 +104,8 @@ impl Fitted {
         }
     }
 
-    /// What is seen in the whole turn is the solid that the scene sweeps when it turns around the axis: for slices along
-    /// the axis, the slice's two heights above the centre and the radius of its farthest vertex.
+    /// The solid of revolution that the scene sweeps when it turns around the axis, as rings of `(height, radius)`:
+    /// both borders of each slice along the axis, with the radius of the farthest vertex in the slice.
     fn rings(&self, scene: &Scene, radius: f32) -> Vec<(f32, f32)> {
         let mut farthest = [-1.0f32; RINGS];
         let slice = 2.0 * radius / RINGS as f32;
@@ -117,7 +119,7 @@ impl Fitted {
         used.flat_map(|(i, far)| [i, i + 1].map(|border| (border as f32 * slice - radius, far.sqrt()))).collect()
     }
 
-    /// True if all of the rings are in view.
+    /// True if all rings are in view.
     fn shows(&self, rings: &[(f32, f32)]) -> bool {
         let half = (self.field_of_view.to_radians() * 0.5).tan() * MARGIN;
         let camera = self.camera(0.0);
@@ -135,7 +137,7 @@ impl Fitted {
 }
 
 impl LightOrbit {
-    /// The light after a share of the turn.
+    /// The light after a share of the turn, 0 to 1.
     pub fn light(&self, bounds: Aabb, up: Vec3, share: f32) -> Light {
         let radius = bounds.diagonal() * 0.5;
         let outward = around(up, self.light_start + share * 360.0);

@@ -1,9 +1,9 @@
-//! A camera path: what a file in `camera-paths/` says, fitted to a scene, frame by frame.
+//! A camera path: the content of a path file, and the views that it gives in a scene.
 
 use super::file;
+use super::keyframes::KeyframePath;
 use super::orbit::{LightOrbit, Orbit};
-use super::recorded::{Recorded, Recording};
-use super::walk::Walk;
+use super::recorded::{RecordedFrames, RecordedPose};
 use super::{Camera, View};
 use crate::error::{Error, Result};
 use crate::math::Aabb;
@@ -11,7 +11,7 @@ use crate::scene::{Light, Placement, Scene, SceneCamera, did_you_mean};
 use glam::{DVec3, Vec3};
 use std::path::Path;
 
-/// The files that are part of the program, so that it works wherever it stands. Name and text.
+/// Name and text of the path files that are embedded in the program, so that it needs no files at run time.
 const EMBEDDED: &[(&str, &str)] = &[
     ("orbit", include_str!("../../camera-paths/orbit.toml")),
     ("light-orbit", include_str!("../../camera-paths/light-orbit.toml")),
@@ -25,7 +25,7 @@ const EMBEDDED: &[(&str, &str)] = &[
     ("sponza", include_str!("../../camera-paths/sponza.toml")),
 ];
 
-/// Where an embedded path stands in errors.
+/// The file name by which errors refer to an embedded path.
 fn embedded_place(name: &str) -> String {
     format!("camera-paths/{name}.toml")
 }
@@ -46,57 +46,57 @@ pub fn descriptions() -> Vec<(String, usize, String)> {
 pub struct CameraPath {
     /// The embedded path's name, or the file's stem.
     pub name: String,
-    /// For people.
+    /// Description in the file, for listings; may be empty.
     pub description: String,
     /// Number of frames of the whole path.
     pub frames: usize,
     /// Vertical field of view in degrees.
     pub field_of_view: f32,
-    /// Roughly up; a walk's keys may have their own.
+    /// The up vector; keys of a walk may override it.
     pub up: Vec3,
-    pub(super) kind: Kind,
-    /// Lights that replace the scene's.
+    pub(super) motion: Motion,
+    /// Lights that replace the scene's; empty if the scene's are used.
     pub(super) lights: Vec<PathLight>,
     /// BLAKE3 of the text, hexadecimal.
     pub(super) hash: String,
-    /// File or name, for errors.
+    /// The file's path or the embedded path's name, by which errors refer to it.
     pub(super) place: String,
 }
 
-/// What moves, and how.
+/// The kind of path: what moves, and along which curve.
 #[derive(Clone, Debug)]
-pub(super) enum Kind {
+pub(super) enum Motion {
     Orbit(Orbit),
     LightOrbit(LightOrbit),
-    Walk(Walk),
-    Recorded(Recorded),
+    Keyframes(KeyframePath),
+    Recorded(RecordedFrames),
 }
 
-/// A light of the path's own.
+/// A light that the path file defines.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PathLight {
-    /// In the file's coordinates, unless it is relative.
+    /// Position in the coordinates of the scene's file, or in units of the bounds if `relative` is set.
     pub position: DVec3,
     pub colour: Vec3,
     /// True if the position is in units of the bounds, 0 to 1 per axis.
     pub relative: bool,
 }
 
-/// What a scene makes of a path's points.
+/// The coordinate systems of a scene; converts points of a path to the coordinates in memory.
 #[derive(Clone, Copy)]
-pub(super) struct Room {
+pub(super) struct SceneSpace {
     /// The box around the scene, in memory.
     pub bounds: Aabb,
     placement: Placement,
 }
 
-impl Room {
-    fn of(scene: &Scene) -> Room {
-        Room { bounds: scene.bounds(), placement: scene.placement }
+impl SceneSpace {
+    fn of(scene: &Scene) -> SceneSpace {
+        SceneSpace { bounds: scene.bounds(), placement: scene.placement }
     }
 
-    /// Where a path's point lies in memory: it is in units of the bounds, 0 to 1 per axis, or in the file's
-    /// coordinates.
+    /// The position in memory of a path's point, which is in units of the bounds (0 to 1 per axis) if `relative`, and
+    /// in the file's coordinates otherwise.
     pub fn place(&self, point: DVec3, relative: bool) -> Vec3 {
         match relative {
             true => self.in_bounds(point.as_vec3()),
@@ -104,17 +104,17 @@ impl Room {
         }
     }
 
-    /// A point in units of the bounds.
+    /// The position in memory of a point in units of the bounds.
     pub fn in_bounds(&self, relative: Vec3) -> Vec3 {
         self.bounds.min + self.bounds.extent() * relative
     }
 }
 
 impl CameraPath {
-    /// A path file if one of that name exists, otherwise the embedded path of that name.
+    /// Loads the path file of that name if it exists, otherwise the embedded path of that name.
     ///
     /// # Errors
-    /// [`Error::Input`] if there is neither, or the file cannot be used.
+    /// [`Error::Input`] if neither exists, or the file cannot be used.
     pub fn load(name_or_file: &str) -> Result<CameraPath> {
         let path = Path::new(name_or_file);
         if path.is_file() {
@@ -127,13 +127,13 @@ impl CameraPath {
         match EMBEDDED.iter().find(|(name, _)| *name == name_or_file) {
             Some((name, text)) => file::parse(name, &embedded_place(name), text),
             None => {
-                let problem = "no file and no built-in camera path is called so";
+                let problem = "there is no file and no built-in camera path of this name";
                 Err(Error::argument(name_or_file, problem, did_you_mean(name_or_file, &names())))
             }
         }
     }
 
-    /// The path that the user names, or that fits the scene and rays with or without shadows.
+    /// The path that the user names, otherwise [`CameraPath::for_scene`].
     ///
     /// # Errors
     /// Those of [`CameraPath::load`].
@@ -141,9 +141,9 @@ impl CameraPath {
         name.map_or_else(|| Ok(CameraPath::for_scene(scene, shadows)), CameraPath::load)
     }
 
-    /// The path that fits the scene, and rays with or without `shadows`, if the user names none: the camera that the scene's file brings;
-    /// the scene's own path; otherwise the thesis's method for single objects (SPEC section 8), the camera's turn for P
-    /// and the light's turn where there are shadows.
+    /// The default path of a scene: the camera of the scene's file if it has one, otherwise the scene's `camera_path`,
+    /// otherwise an orbit around the scene, as the thesis of 2009 measured single objects: the camera turns if there
+    /// are no `shadows`, the light turns if there are.
     pub fn for_scene(scene: &Scene, shadows: bool) -> CameraPath {
         if let Some(camera) = scene.camera.as_ref().filter(|camera| !camera.frames.is_empty()) {
             return CameraPath::of_file(scene, camera);
@@ -153,14 +153,14 @@ impl CameraPath {
         own.unwrap_or_else(|| CameraPath::load(default).expect("an embedded path is sound: a test loads each"))
     }
 
-    /// The camera that a scene's file brings. A still one is a path of one frame.
+    /// The camera of a scene's file as a path; a static camera gives one frame.
     fn of_file(scene: &Scene, camera: &SceneCamera) -> CameraPath {
-        // Without the options that may stand behind the file's name
+        // The name without its options
         let name = scene.name.split(':').next().unwrap_or_default().to_owned();
         let description = format!("The camera of the scene file {name}");
         let text = super::to_placed_toml(&scene.placement, camera, &[], &description);
         let hash = blake3::hash(text.as_bytes()).to_hex().to_string();
-        let poses = camera.frames.iter().map(|pose| Recording::Placed(*pose)).collect();
+        let poses = camera.frames.iter().map(|pose| RecordedPose::Placed(*pose)).collect();
         CameraPath {
             place: name.clone(),
             name,
@@ -168,7 +168,7 @@ impl CameraPath {
             frames: camera.frames.len(),
             field_of_view: camera.field_of_view,
             up: Vec3::Y,
-            kind: Kind::Recorded(Recorded { poses }),
+            motion: Motion::Recorded(RecordedFrames { poses }),
             lights: Vec::new(),
             hash,
         }
@@ -179,69 +179,69 @@ impl CameraPath {
         self.hash.clone()
     }
 
-    /// The frames of the path in this scene: all, or thinned evenly to `frames`, of which number i is the path's number
-    /// `round(i * all / frames)`; the first is always there. A recorded camera that stands still has one frame, however
-    /// many are wanted: more of the same would show nothing else.
+    /// The views of the path in this scene: all frames, or `frames` of them, evenly spaced. View `i` is the path's
+    /// frame `round(i * all / frames)`, so that the first frame is always included. A static recorded camera gives one
+    /// view for any number of `frames`.
     ///
     /// # Errors
-    /// [`Error::Input`] if there are fewer frames than wanted, or the path does not work in this scene.
+    /// [`Error::Input`] if the path has fewer frames than requested, or its camera is not valid in this scene.
     pub fn views(&self, scene: &Scene, frames: Option<usize>) -> Result<Vec<View>> {
-        let wanted = frames.map_or(self.frames, |frames| if self.stands_still() { frames.min(1) } else { frames });
+        let wanted = frames.map_or(self.frames, |frames| if self.is_static() { frames.min(1) } else { frames });
         if wanted == 0 || wanted > self.frames {
             return Err(Error::argument(
                 &self.place,
-                format!("{wanted} frames wanted, but the path has {}", self.frames),
+                format!("{wanted} frames are requested, but the path has {}", self.frames),
                 format!("take 1 to {} frames{}", self.frames, self.more_frames()),
             ));
         }
-        let room = Room::of(scene);
-        let bounds = room.bounds;
+        let space = SceneSpace::of(scene);
+        let bounds = space.bounds;
         if bounds.diagonal() <= 0.0 || bounds.is_empty() {
             let problem = format!("scene {} is a single point: no camera can look at it", scene.name);
             return Err(Error::argument(&self.place, problem, "give a scene with an extent"));
         }
         let frame = |i| self.thinned(i, wanted);
-        match &self.kind {
-            Kind::Orbit(orbit) => {
+        match &self.motion {
+            Motion::Orbit(orbit) => {
                 let fitted = orbit.fit(scene, bounds, self.up, self.field_of_view);
-                (0..wanted).map(|i| self.view(scene, room, frame(i), fitted.camera(self.share(frame(i))))).collect()
+                (0..wanted).map(|i| self.view(scene, space, frame(i), fitted.camera(self.share(frame(i))))).collect()
             }
-            Kind::LightOrbit(orbit) => {
+            Motion::LightOrbit(orbit) => {
                 let camera = orbit.camera.fit(scene, bounds, self.up, self.field_of_view).camera(0.0);
                 let camera = Camera { position: scene.placement.snap(camera.position), ..camera };
                 let light = |i| vec![orbit.light(bounds, self.up, self.share(frame(i)))];
                 self.check_camera(frame(0), &camera)?;
                 Ok((0..wanted).map(|i| View { camera, lights: light(i) }).collect())
             }
-            Kind::Recorded(recorded) => (0..wanted)
-                .map(|i| self.view(scene, room, frame(i), recorded.camera(room, frame(i), self.field_of_view)))
+            Motion::Recorded(recorded) => (0..wanted)
+                .map(|i| self.view(scene, space, frame(i), recorded.camera(space, frame(i), self.field_of_view)))
                 .collect(),
-            Kind::Walk(walk) => (0..wanted)
+            Motion::Keyframes(keyframes) => (0..wanted)
                 .map(|i| {
-                    // The last frame stands at the last key.
+                    // The last frame shows the last key.
                     let share = frame(i) as f32 / (self.frames - 1).max(1) as f32;
-                    let camera = walk.camera(room, self.up, self.field_of_view, share);
-                    self.view(scene, room, frame(i), camera)
+                    let camera = keyframes.camera(space, self.up, self.field_of_view, share);
+                    self.view(scene, space, frame(i), camera)
                 })
                 .collect(),
         }
     }
 
-    /// What else helps where a path has too few frames. Only a file of the user's own can be given more.
+    /// Part of the hint for a path with too few frames: a file of the user can be given more, an embedded path cannot.
     fn more_frames(&self) -> &'static str {
         let embedded = EMBEDDED.iter().any(|(name, _)| self.place == embedded_place(name));
-        match &self.kind {
+        match &self.motion {
             _ if embedded || !Path::new(&self.place).is_file() => "",
-            Kind::Recorded(_) => ", or add poses to the file",
+            Motion::Recorded(_) => ", or add poses to the file",
             _ => ", or raise `frames` in the file",
         }
     }
 
-    fn stands_still(&self) -> bool {
-        matches!(&self.kind, Kind::Recorded(recorded) if recorded.poses.len() == 1)
+    fn is_static(&self) -> bool {
+        matches!(&self.motion, Motion::Recorded(recorded) if recorded.poses.len() == 1)
     }
 
-    /// The path's frame that is number `i` of `wanted`.
+    /// The number in the whole path of frame `i` of `wanted`.
     fn thinned(&self, i: usize, wanted: usize) -> usize {
         (2 * i * self.frames + wanted) / (2 * wanted)
     }
@@ -249,55 +249,55 @@ impl CameraPath {
     /// The time of frame `i` of `wanted`: the recorded one, or the frame's number in the whole path.
     pub(super) fn time(&self, i: usize, wanted: usize) -> f64 {
         let frame = self.thinned(i, wanted);
-        match &self.kind {
-            Kind::Recorded(recorded) => recorded.poses[frame].time(),
+        match &self.motion {
+            Motion::Recorded(recorded) => recorded.poses[frame].time(),
             _ => frame as f64,
         }
     }
 
-    /// The share of the turn at a frame: a full turn after the last.
+    /// The share of the turn at a frame; the frame after the last would complete the turn.
     fn share(&self, frame: usize) -> f32 {
         frame as f32 / self.frames as f32
     }
 
-    /// What a frame shows. The camera's position is rounded as an exported path would round it.
-    fn view(&self, scene: &Scene, room: Room, frame: usize, camera: Camera) -> Result<View> {
+    /// The view of a frame. The camera's position is rounded as an exported path would round it.
+    fn view(&self, scene: &Scene, space: SceneSpace, frame: usize, camera: Camera) -> Result<View> {
         let camera = Camera { position: scene.placement.snap(camera.position), ..camera };
         self.check_camera(frame, &camera)?;
-        Ok(View { camera, lights: self.lights_for(scene, room, &camera) })
+        Ok(View { camera, lights: self.lights_for(scene, space, &camera) })
     }
 
-    /// True if each frame has a light of its own, as a light orbit's have.
+    /// True if the light moves from frame to frame, as in a light orbit.
     pub fn moves_light(&self) -> bool {
-        matches!(self.kind, Kind::LightOrbit(_))
+        matches!(self.motion, Motion::LightOrbit(_))
     }
 
-    /// The path's own lights that stand still, in this scene.
+    /// The static lights of the path file, placed in this scene.
     pub fn lights(&self, scene: &Scene) -> Vec<Light> {
-        self.lights_in(Room::of(scene))
+        self.lights_in(SceneSpace::of(scene))
     }
 
-    fn lights_in(&self, room: Room) -> Vec<Light> {
-        let place = |l: &PathLight| room.placement.snap(room.place(l.position, l.relative));
+    fn lights_in(&self, space: SceneSpace) -> Vec<Light> {
+        let place = |l: &PathLight| space.placement.snap(space.place(l.position, l.relative));
         self.lights.iter().map(|l| Light::new(place(l), l.colour)).collect()
     }
 
-    /// The path's lights, or the scene's, or the default light: white, half the scene's radius above and a quarter to the
-    /// left of the camera, and moving with it, so that what is seen is lit.
-    fn lights_for(&self, scene: &Scene, room: Room, camera: &Camera) -> Vec<Light> {
+    /// The path's lights, otherwise the scene's, otherwise the default light. The default light is white and moves with
+    /// the camera: half the scene's radius above and a quarter of it to the left, so that the visible surfaces are lit.
+    fn lights_for(&self, scene: &Scene, space: SceneSpace, camera: &Camera) -> Vec<Light> {
         if !self.lights.is_empty() {
-            return self.lights_in(room);
+            return self.lights_in(space);
         }
         if !scene.lights.is_empty() {
             return scene.lights.clone();
         }
-        let radius = room.bounds.diagonal() * 0.5;
+        let radius = space.bounds.diagonal() * 0.5;
         let right = camera.direction.cross(camera.up).normalize();
         let up = right.cross(camera.direction);
         vec![Light::new(camera.position + (up * 0.5 - right * 0.25) * radius, Vec3::ONE)]
     }
 
-    /// Interpolation may bring a camera where it cannot look.
+    /// Refuses a camera without a valid direction or up vector, which interpolation of keys can produce.
     fn check_camera(&self, frame: usize, camera: &Camera) -> Result<()> {
         let fault = |problem: &str, hint: &str| {
             Err(Error::argument(&self.place, format!("frame {frame}: {problem}"), hint.to_owned()))

@@ -1,60 +1,59 @@
-//! Recorded frames: where the camera was at each of them. What scene files bring, and what is written for others to read.
+//! Recorded frames: a camera pose for each frame, read from scene files and path files, and exported as TOML and CSV.
 
-use super::path::Room;
+use super::path::SceneSpace;
 use super::{Camera, CameraPath, View};
 use crate::error::Result;
 use crate::scene::{Light, Placement, Pose, Scene, SceneCamera};
 use glam::{DVec3, Vec3};
 use std::fmt::Write;
 
-/// A camera per frame.
+/// A path with a recorded pose for each frame.
 #[derive(Clone, Debug)]
-pub(super) struct Recorded {
-    pub poses: Vec<Recording>,
+pub(super) struct RecordedFrames {
+    pub poses: Vec<RecordedPose>,
 }
 
-/// Where the camera was at a frame.
+/// The camera's pose in one frame.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Recording {
-    /// In a scene as it lies in memory.
+pub(super) enum RecordedPose {
+    /// A pose in the scene's coordinates in memory.
     Placed(Pose),
-    /// At a point of the file's coordinates.
+    /// A pose in the coordinates of the scene's file.
     InFile { position: DVec3, time: f64, direction: Vec3, up: Vec3 },
 }
 
-impl Recording {
+impl RecordedPose {
     pub fn time(&self) -> f64 {
         match self {
-            Recording::Placed(Pose { time, .. }) | Recording::InFile { time, .. } => *time,
+            RecordedPose::Placed(Pose { time, .. }) | RecordedPose::InFile { time, .. } => *time,
         }
     }
 }
 
-impl Recorded {
-    /// The camera at a frame.
-    pub fn camera(&self, room: Room, frame: usize, field_of_view: f32) -> Camera {
+impl RecordedFrames {
+    pub fn camera(&self, space: SceneSpace, frame: usize, field_of_view: f32) -> Camera {
         match self.poses[frame] {
-            Recording::Placed(Pose { position, direction, up, .. }) => {
+            RecordedPose::Placed(Pose { position, direction, up, .. }) => {
                 Camera { position, direction, up, field_of_view }
             }
-            Recording::InFile { position, direction, up, .. } => {
-                Camera { position: room.place(position, false), direction, up, field_of_view }
+            RecordedPose::InFile { position, direction, up, .. } => {
+                Camera { position: space.place(position, false), direction, up, field_of_view }
             }
         }
     }
 }
 
-/// The columns of a recorded frame; in CSV the frame's number stands before them.
+/// The columns of a recorded frame; in CSV the frame's number precedes them.
 const COLUMNS: [&str; 10] = ["time", "pos_x", "pos_y", "pos_z", "dir_x", "dir_y", "dir_z", "up_x", "up_y", "up_z"];
 
-/// The position in the file's coordinates; direction and up.
+/// The position in the file's coordinates, and the components of direction and up.
 fn numbers(placement: &Placement, pose: &Pose) -> ([f64; 3], [f32; 6]) {
     let Pose { position, direction: d, up: u, .. } = *pose;
     (placement.coordinates(position), [d.x, d.y, d.z, u.x, u.y, u.z])
 }
 
 impl CameraPath {
-    /// The path's frames in this scene as poses; where the path has no times of its own, a frame's time is its number.
+    /// The path's frames in this scene as poses. If the path has no recorded times, a frame's time is its number.
     ///
     /// # Errors
     /// As [`CameraPath::views`].
@@ -69,13 +68,13 @@ impl CameraPath {
     }
 }
 
-/// A camera path file of recorded frames, and of the path's own lights if it has some. It gives the same views again, to
-/// the bit: numbers are written with as many digits as it takes.
+/// The text of a camera path file with recorded frames and `lights`. Numbers have enough digits that the file gives the
+/// same views, to the bit.
 pub fn to_toml(camera: &SceneCamera, lights: &[Light], description: &str) -> String {
     to_placed_toml(&Placement::IDENTITY, camera, lights, description)
 }
 
-/// The same for a scene that does not lie in memory as in its file: written are the file's coordinates.
+/// Like [`to_toml`], with all positions converted to the coordinates of the scene's file.
 pub fn to_placed_toml(placement: &Placement, camera: &SceneCamera, lights: &[Light], description: &str) -> String {
     let description = toml::Value::from(description);
     let mut text = format!("description = {description}\nkind = \"frames\"\n");
@@ -98,12 +97,12 @@ pub fn to_placed_toml(placement: &Placement, camera: &SceneCamera, lights: &[Lig
     text
 }
 
-/// Recorded frames as CSV, a row for each: its number, its time, position, direction and up.
+/// Recorded frames as CSV; a row is number, time, position, direction and up of a frame.
 pub fn to_csv(camera: &SceneCamera) -> String {
     to_placed_csv(&Placement::IDENTITY, camera)
 }
 
-/// The same in the coordinates of a scene's file.
+/// Like [`to_csv`], with positions converted to the coordinates of the scene's file.
 pub fn to_placed_csv(placement: &Placement, camera: &SceneCamera) -> String {
     let mut text = format!("frame,{}\n", COLUMNS.join(","));
     for (frame, pose) in camera.frames.iter().enumerate() {

@@ -1,19 +1,16 @@
-//! `rtbench build`: structures alone.
+//! `rtbench build`: builds structures without tracing rays.
 
 use super::interrupt;
 use super::library::LibraryArguments;
 use super::output;
 use super::progress::Building;
 use crate::error::{Error, Result};
-use crate::harness::plan::{self, parse_list};
-use crate::harness::{building, sweep};
+use crate::harness::parse_list;
 use crate::record::files;
-use crate::record::schema::{SceneRecord, StructureRecord};
-use crate::record::summary::{self, StructureRow};
-use crate::record::table;
+use crate::record::row::{Artifact, Input};
 use crate::scene::Scene;
-use crate::workloads::trace::Selection;
-use crate::workloads::trace::backend::Interrupted;
+use crate::workloads::trace::record::SceneRecord;
+use crate::workloads::trace::{Selection, artifacts, building, input};
 use clap::Args;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -24,19 +21,19 @@ use std::sync::atomic::Ordering;
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
-    /// Scene file, or name of a scene with options; may be repeated
+    /// Scene file, or name of a scene, with options; may be repeated
     #[arg(long, required = true, value_name = "FILE|NAME[:KEY=VALUE,..]")]
     scene: Vec<String>,
     /// Structures with options; comma list, may be repeated
     #[arg(long, value_name = "NAME[:KEY=VALUE,..]", default_value = "grid,kdtree,bvh,ploc-stack")]
     structure: Vec<String>,
-    /// Build each structure this often; the median of the build times is reported
+    /// Build each structure N times and report the median build time
     #[arg(long, value_name = "N", default_value_t = 1)]
     runs: usize,
-    /// Threads; 0 for all
+    /// Number of threads; 0 for one per processor
     #[arg(long, value_name = "N", default_value_t = 0)]
     threads: usize,
-    /// Check every invariant of each structure; what breaks one makes the exit code 1
+    /// Check every invariant of each structure; the exit code is 1 if one is violated
     #[arg(long)]
     validate: bool,
     /// Also write the table as a CSV file, with the columns of a sweep's structures.csv
@@ -50,46 +47,47 @@ const EXAMPLES: &str = "\
 Examples:
   rtbench build --scene bunny.ply
   rtbench build --scene bunny.ply --structure bvh --threads 1 --runs 9
-      a build time to hold against another builder's
+      a build time to compare with another builder's
   rtbench build --scene stadium --structure grid,grid:factor=8 --validate --csv grids.csv";
 
-/// Runs the command. After Ctrl-C, which no build is waited for, what was built until then is reported.
+/// Runs the command. Ctrl-C does not wait for the running build; the structures built until then are reported.
 ///
 /// # Errors
-/// Of scene, structure or output, or [`Error::Interrupted`].
+/// Those of loading a scene, of building, and of the output; [`Error::Interrupted`] after Ctrl-C.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
-    let selections = parse_list(&arguments.structure, Selection::parse)?;
+    let selections = parse_list(&arguments.structure, Selection::parse_all)?.concat();
     if !(1..=1000).contains(&arguments.runs) {
         return Err(Error::argument("--runs", format!("{} runs", arguments.runs), "give 1 to 1000"));
     }
     let stop = interrupt::flag(|| output::note("stopping; Ctrl-C again ends the program at once"))?;
     let mut job = Job { arguments, interrupted: &|| stop.load(Ordering::Relaxed), rows: Vec::new(), broken: 0 };
-    let ended = arguments.scene.iter().try_for_each(|what| job.scene(what, &selections));
+    let ended = arguments.scene.iter().try_for_each(|name| job.scene(name, &selections));
     if matches!(ended, Ok(()) | Err(Error::Interrupted)) && !(ended.is_err() && job.rows.is_empty()) {
-        output::print(&table::structures(&job.rows))?;
+        let rows: Vec<artifacts::Row> = job.rows.iter().map(|(artifact, scene)| (artifact, scene)).collect();
+        output::print(&artifacts::table(&rows))?;
         if let Some(path) = &arguments.csv {
-            files::replace(path, &summary::structures_csv(&job.rows)?)?;
+            files::replace(path, &artifacts::csv(&rows)?)?;
         }
     }
     ended.map(|()| ExitCode::from(u8::from(job.broken > 0)))
 }
 
-/// What is built, and what came of it.
+/// The command's arguments and the results so far.
 struct Job<'a> {
     arguments: &'a Arguments,
-    interrupted: Interrupted<'a>,
-    rows: Vec<StructureRow>,
+    interrupted: &'a dyn Fn() -> bool,
+    rows: Vec<(Artifact, Input)>,
     /// How many structures are not valid.
     broken: usize,
 }
 
 impl Job<'_> {
-    fn scene(&mut self, what: &str, selections: &[Selection]) -> Result<()> {
-        let scene = Arc::new(self.arguments.library.load(what)?);
+    fn scene(&mut self, name: &str, selections: &[Selection]) -> Result<()> {
+        let scene = Arc::new(self.arguments.library.load(name)?);
         if (self.interrupted)() {
             return Err(Error::Interrupted);
         }
-        let record = plan::scene_record(&scene);
+        let record = input::scene_record(&scene);
         selections.iter().try_for_each(|selection| self.structure(&scene, &record, selection))
     }
 
@@ -111,16 +109,7 @@ impl Job<'_> {
                 }
             }
         }
-        self.rows.push(StructureRow::new(&StructureRecord {
-            scene: record.clone(),
-            structure: selection.name().to_string(),
-            variant: selection.variant(),
-            properties: built.structure.properties(scene),
-            build_ms: built.build_ms,
-            build_threads: built.build_threads,
-            memory: sweep::memory(&built, scene, None),
-            note: built.note,
-        }));
+        self.rows.push((input::artifact(record, selection, &built, scene, None), record.to_input()));
         Ok(())
     }
 }

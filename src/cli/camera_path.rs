@@ -1,4 +1,4 @@
-//! `rtbench camera-path`: where cameras go.
+//! `rtbench camera-path`: lists the built-in camera paths and exports a scene's.
 
 use super::library::LibraryArguments;
 use super::output;
@@ -17,19 +17,19 @@ pub enum Command {
     List,
     /// Write a scene's camera path, frame by frame
     ///
-    /// A file that ends in .csv gets a row per frame: frame, time, position, direction, up. Any other becomes a camera
-    /// path file that shows the same views again, to the bit. Positions are in the coordinates of the scene's file. A
-    /// path whose light moves cannot be written.
+    /// A file that ends in .csv gets a row per frame: frame, time, position, direction, up. Any other file becomes a
+    /// camera path file that gives the same views, to the bit. Positions are in the coordinates of the scene's file. A
+    /// path with a moving light cannot be exported.
     Export {
-        /// Scene file, or built-in scene with parameters
+        /// Scene file, or name of a scene, with options
         #[arg(value_name = "FILE|NAME[:KEY=VALUE,..]")]
         scene: String,
         #[command(flatten)]
         library: LibraryArguments,
-        /// Camera path, instead of the scene's own
+        /// Camera path to export instead of the scene's default
         #[arg(long, value_name = "FILE|NAME")]
         camera_path: Option<String>,
-        /// Thin the path evenly to this many frames
+        /// Export only N frames, evenly spaced
         #[arg(long, value_name = "N")]
         frames: Option<usize>,
         /// File to write, .toml or .csv
@@ -47,7 +47,7 @@ Examples:
 /// Runs the command.
 ///
 /// # Errors
-/// Of scene, path or output.
+/// Those of loading the scene and the path, and of the output.
 pub fn run(command: &Command) -> Result<()> {
     match command {
         Command::List => {
@@ -56,11 +56,11 @@ pub fn run(command: &Command) -> Result<()> {
         }
         Command::Export { scene, library, camera_path, frames, out } => {
             let (scene, sources) = library.load_with_sources(scene)?;
-            files::keep(out, sources.paths().chain(camera_path.as_deref().map(Path::new)))?;
+            files::refuse_overwrite(out, sources.paths().chain(camera_path.as_deref().map(Path::new)))?;
             let path = CameraPath::named_or_fitting(camera_path.as_deref(), &scene, Config::P.shadows())?;
             if path.moves_light() {
                 let name = camera_path.as_deref().unwrap_or(&path.name);
-                let problem = "its light moves, and recorded frames have only a camera";
+                let problem = "its light moves, but an exported path holds only camera poses";
                 return Err(Error::argument(name, problem, format!("use the path itself: --camera-path {name}")));
             }
             let recorded = path.poses(&scene, *frames)?;

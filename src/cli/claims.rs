@@ -1,28 +1,26 @@
-//! `rtbench claims`: what the thesis says, judged by measurements.
+//! `rtbench claims`: the claims of sources, judged by measurements.
 
-use super::runs::{Into, RunArguments, Sources, deliver};
-use super::tables;
+use super::runs::{DeviceArguments, Into, RunArguments, write_or_print};
 use crate::error::Result;
-use crate::thesis::claims::{self, Form};
-use crate::thesis::splice::Need;
+use crate::report::splice::Need;
+use crate::sources::claims::{self, Finding, Form};
 use clap::Args;
 use std::path::PathBuf;
 
-/// Judge the thesis's claims by recorded runs
+/// Judge the claims of the thesis (or another source) by recorded runs
 ///
-/// For each claim: holds, does not hold, undecided (no difference is beyond noise and margin, or only the thesis's own
-/// exceptions are) or not measured, with the numbers. Without a run, the claims are judged by the thesis's own printed numbers. The exit code is 0 whatever the
-/// verdicts are.
+/// For each claim: holds, does not hold, undecided (no difference is beyond noise and margin, or only the source's own
+/// exceptions are) or not measured, with the numbers. Without a run, the claims are judged by the source's own
+/// published numbers. The exit code is 0 for all verdicts.
 #[derive(Args, Debug)]
 pub struct Arguments {
     #[command(flatten)]
     runs: RunArguments,
-    /// Form of the verdicts
+    /// Format of the verdicts
     #[arg(long, value_enum, default_value_t)]
     format: Form,
-    /// The thesis's card whose numbers stand beside the verdicts
-    #[arg(long, default_value = "GTX280", value_name = "GTX280|8600GT")]
-    card: String,
+    #[command(flatten)]
+    device: DeviceArguments,
     /// Write to a file instead of standard output
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -33,23 +31,20 @@ pub struct Arguments {
 /// Runs the command.
 ///
 /// # Errors
-/// A run that cannot be read, output that cannot be written.
+/// A run that cannot be read, an unknown source or device, output that cannot be written.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let sources = arguments.runs.read()?;
-    let card = tables::card(&sources.published, &arguments.card)?;
-    let findings = claims::judge(&sources.data, &sources.published, card);
-    let block = || vec![("claims".to_owned(), claims::summary(&findings, &whose(&sources)))];
-    if arguments.into.splice(block, Need::All)? {
-        return Ok(());
-    }
-    deliver(&claims::write(&findings, &whose(&sources), arguments.format), arguments.output.as_deref())
-}
-
-/// Whose numbers are judged.
-fn whose(sources: &Sources) -> String {
-    match sources.runs.len() {
+    let opened = arguments.runs.read()?;
+    let devices = arguments.device.select(&opened.sources)?;
+    let findings: Vec<Vec<Finding>> =
+        opened.each().zip(devices).map(|((_, results), device)| results.claims(device)).collect();
+    let by = match opened.runs.len() {
         0 => "the numbers that it printed".into(),
         1 => "1 run".into(),
         n => format!("{n} runs"),
+    };
+    let block = || findings.iter().map(|of_source| ("claims".to_owned(), claims::summary(of_source, &by))).collect();
+    if arguments.into.splice(&opened, block, Need::All)? {
+        return Ok(());
     }
+    write_or_print(&claims::write(&findings, &by, arguments.format), arguments.output.as_deref())
 }

@@ -1,15 +1,15 @@
-//! `rtbench completions`: scripts that let a shell complete commands and flags.
+//! `rtbench completions`: prints a script with which a shell completes commands and flags.
 
 use super::output;
 use crate::error::Result;
-use clap::{Args, CommandFactory};
+use clap::Args;
 use clap_complete::Shell;
 
 /// Print a shell's completion script
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
-    /// Shell
+    /// The shell that the script is for
     #[arg(value_enum)]
     shell: Shell,
 }
@@ -22,9 +22,9 @@ Examples:
 /// Runs the command.
 ///
 /// # Errors
-/// Standard output's.
+/// Standard output cannot be written.
 pub fn run(arguments: &Arguments) -> Result<()> {
     let mut script = Vec::new();
-    clap_complete::generate(arguments.shell, &mut super::Cli::command(), "rtbench", &mut script);
+    clap_complete::generate(arguments.shell, &mut super::cli(), "rtbench", &mut script);
     output::print(&String::from_utf8_lossy(&script))
 }

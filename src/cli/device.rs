@@ -1,12 +1,12 @@
 //! Which device: flags that several commands share, and the choice that `auto` makes.
 
 use super::output;
+use crate::device::Device;
+use crate::device::vulkan::{self, Selector, VulkanOptions};
+use crate::device::{CpuDevice, VulkanDevice};
 use crate::error::{Error, Result};
-use crate::harness::sweep::Opened;
+use crate::harness::run::Opened;
 use crate::threads;
-use crate::workloads::trace::CpuBackend;
-use crate::workloads::trace::backend::DeviceType;
-use crate::workloads::trace::gpu::{self, GpuBackend, GpuOptions, Selector};
 use clap::{Args, ValueEnum};
 
 /// Which device, and how it is used.
@@ -60,7 +60,7 @@ impl DeviceArguments {
         if self.backend == BackendName::Cpu {
             return self.cpu("asked for by --backend cpu".into());
         }
-        let adapters = gpu::adapters();
+        let adapters = vulkan::adapters();
         let free_choice = self.backend == BackendName::Auto && self.adapter.is_none();
         if free_choice && adapters.is_empty() {
             return self.cpu("there is no Vulkan adapter".into());
@@ -69,44 +69,32 @@ impl DeviceArguments {
             Some(wanted) => wanted.parse().unwrap_or_default(),
             None => Selector::Best,
         };
-        let index = gpu::choose(&adapters, &selector)?;
+        let adapter = vulkan::choose(&adapters, &selector)?;
         let reason = match &self.adapter {
             Some(wanted) => format!("asked for by --adapter {wanted}"),
             None if adapters.len() == 1 => "the only Vulkan adapter".into(),
             None => {
-                let names: Vec<&str> = adapters.iter().map(|a| a.name.as_str()).collect();
+                let names: Vec<&str> = adapters.iter().map(|adapter| adapter.info().name.as_str()).collect();
                 format!("the best of {} Vulkan adapters: {}", adapters.len(), names.join(", "))
             }
         };
-        let options = GpuOptions { checked: self.checked, ..GpuOptions::default() };
-        match GpuBackend::open(&Selector::Index(index), options) {
-            Ok(backend) => Ok(Opened { backend: Box::new(backend), reason }),
+        let options = VulkanOptions { checked: self.checked, ..VulkanOptions::default() };
+        match VulkanDevice::open(adapter, options) {
+            Ok(backend) => Ok(Opened { device: Device::Vulkan(backend), reason }),
             // Only a free choice may fall back.
-            Err(error) if free_choice => self.cpu(format!("{} cannot be used: {error}", adapters[index].name)),
+            Err(error) if free_choice => self.cpu(format!("{} cannot be used: {error}", adapter.info().name)),
             Err(error) => Err(error),
         }
     }
 
     fn cpu(&self, reason: String) -> Result<Opened> {
-        Ok(Opened { backend: Box::new(CpuBackend::new(self.threads)?), reason })
+        Ok(Opened { device: Device::Cpu(CpuDevice::new(self.threads)?), reason })
     }
 }
 
 /// Tells the user which device it is, and why.
 pub fn announce(device: &Opened) {
-    let info = device.backend.info();
+    let info = device.device.info();
     let driver = if info.driver.is_empty() { String::new() } else { format!(", {}", info.driver) };
-    output::note(&format!("device: {}{driver} ({}; {})", info.name, kind(info.device_type), device.reason));
-}
-
-/// A device type in words.
-pub fn kind(device_type: DeviceType) -> &'static str {
-    match device_type {
-        DeviceType::CpuTwin => "CPU twins",
-        DeviceType::SoftwareRasteriser => "software rasteriser",
-        DeviceType::IntegratedGpu => "integrated GPU",
-        DeviceType::DiscreteGpu => "discrete GPU",
-        DeviceType::VirtualGpu => "virtual GPU",
-        DeviceType::Other => "unknown kind",
-    }
+    output::note(&format!("device: {}{driver} ({}; {})", info.name, info.device_type.in_words(), device.reason));
 }

@@ -1,33 +1,30 @@
-//! `rtbench devices`: what can compute.
+//! `rtbench devices`: lists the devices that can run kernels.
 
-use super::device::kind;
 use super::output;
+use crate::device::{CpuDevice, DeviceInfo, vulkan};
 use crate::error::Result;
-use crate::workloads::trace::CpuBackend;
-use crate::workloads::trace::backend::{Backend, DeviceInfo};
-use crate::workloads::trace::gpu;
 use clap::Args;
 
 /// List Vulkan adapters with features and limits, and the CPU
 ///
-/// The number before an adapter is what --adapter takes; a part of its name works as well.
+/// --adapter accepts the number of an adapter, or a part of its name.
 #[derive(Args, Debug)]
 pub struct Arguments {}
 
 /// Runs the command.
 ///
 /// # Errors
-/// Standard output's.
+/// Standard output cannot be written.
 pub fn run(_: &Arguments) -> Result<()> {
-    let adapters = gpu::adapters();
+    let adapters = vulkan::adapters();
     let mut text = String::new();
     if adapters.is_empty() {
         text += "no Vulkan adapter (./setup.sh installs a software one)\n\n";
     }
     for (index, adapter) in adapters.iter().enumerate() {
-        text += &describe(&format!("--backend vulkan --adapter {index}"), adapter);
+        text += &describe(&format!("--backend vulkan --adapter {index}"), adapter.info());
     }
-    text += &describe("--backend cpu", CpuBackend::new(0)?.info());
+    text += &describe("--backend cpu", CpuDevice::new(0)?.info());
     output::print(&text)
 }
 
@@ -35,7 +32,7 @@ fn describe(flags: &str, device: &DeviceInfo) -> String {
     let mut text = format!("{}\n", device.name);
     let mut line = |name: &str, value: String| text += &format!("  {name:<12}{value}\n");
     line("choose", flags.to_owned());
-    line("kind", kind(device.device_type).to_owned());
+    line("kind", device.device_type.in_words().to_owned());
     if !device.driver.is_empty() {
         line("driver", device.driver.clone());
     }

@@ -1,22 +1,21 @@
-//! `rtbench figures`: the thesis's figures as SVG.
+//! `rtbench figures`: the figures of sources as SVG.
 
 use super::output;
 use super::runs::RunArguments;
 use crate::error::{Error, Result};
 use crate::record::files;
-use crate::thesis::figures;
 use clap::Args;
 use std::path::PathBuf;
 
-/// Draw the thesis's figures from recorded runs
+/// Draw the figures of the thesis (or another source) from recorded runs, as SVG
 ///
-/// SVG for figures 5.1 to 5.4, and bars of frame times. Without a run, what the thesis printed is drawn. A figure without
-/// data is not drawn, and named.
+/// The thesis has figures 5.1 to 5.4 and bars of frame times. Without a run, the published numbers are drawn. A figure
+/// without data is not drawn, and named.
 #[derive(Args, Debug)]
 pub struct Arguments {
     #[command(flatten)]
     runs: RunArguments,
-    /// Folder for the figures; files of the same names are replaced
+    /// Folder for the figures, with a folder for each of several sources; files of the same names are replaced
     #[arg(long, short, value_name = "FOLDER")]
     output: PathBuf,
 }
@@ -24,20 +23,23 @@ pub struct Arguments {
 /// Runs the command.
 ///
 /// # Errors
-/// A run that cannot be read, a folder that cannot be written to.
+/// A run that cannot be read, an unknown source, a folder that cannot be written to.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let sources = arguments.runs.read()?;
-    let (figures, missing) = figures::all(&sources.data)?;
-    for absent in missing {
-        let what = if absent.id == "bars" { "bars of frame times".into() } else { format!("figure {}", absent.id) };
-        output::note(&format!("{what} is not drawn: it needs {}", absent.needs));
-    }
-    std::fs::create_dir_all(&arguments.output).map_err(|source| Error::output(&arguments.output, source))?;
+    let opened = arguments.runs.read()?;
     let mut text = String::new();
-    for figure in figures {
-        let path = arguments.output.join(format!("{}.svg", figure.name));
-        files::replace(&path, figure.svg.as_bytes())?;
-        text += &format!("{}\n", path.display());
+    for (source, results) in opened.each() {
+        let (figures, missing) = results.figures()?;
+        for absent in missing {
+            output::note(&format!("{} is not drawn: it needs {}", absent.what, absent.needs));
+        }
+        let several = opened.sources.len() > 1;
+        let folder = if several { arguments.output.join(source.name) } else { arguments.output.clone() };
+        std::fs::create_dir_all(&folder).map_err(|source| Error::output(&folder, source))?;
+        for figure in figures {
+            let path = folder.join(format!("{}.svg", figure.name));
+            files::replace(&path, figure.svg.as_bytes())?;
+            text += &format!("{}\n", path.display());
+        }
     }
     output::print(&text)
 }

@@ -1,4 +1,4 @@
-//! Ctrl-C. Its handler runs on a thread of its own, where printing is allowed.
+//! Handlers for Ctrl-C. They run on a separate thread, so that they may print.
 
 use super::output;
 use crate::error::{Error, Result};
@@ -6,26 +6,27 @@ use std::process::exit;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// A flag that Ctrl-C sets, after which `tell` is called. The second Ctrl-C ends the program at once.
+/// A flag that the first Ctrl-C sets, after which `notify` is called. The second Ctrl-C ends the program at once.
 ///
 /// # Errors
-/// [`Error::Device`] if the system does not allow it.
-pub fn flag(tell: impl Fn() + Send + 'static) -> Result<Arc<AtomicBool>> {
+/// [`Error::Device`] if the system does not allow a handler.
+pub fn flag(notify: impl Fn() + Send + 'static) -> Result<Arc<AtomicBool>> {
     let flag = Arc::new(AtomicBool::new(false));
     let set = Arc::clone(&flag);
     listen(move || {
         if set.swap(true, Ordering::Relaxed) {
             exit(Error::Interrupted.exit_code().into());
         }
-        tell();
+        notify();
     })?;
     Ok(flag)
 }
 
-/// Ctrl-C ends the program at once, with a line and its exit code: for commands that write nothing before they are done.
+/// Makes Ctrl-C end the program at once, with a message and exit code 130, for commands that write nothing before they
+/// are done.
 ///
 /// # Errors
-/// [`Error::Device`] if the system does not allow it.
+/// [`Error::Device`] if the system does not allow a handler.
 pub fn at_once() -> Result<()> {
     listen(|| {
         output::complain(&Error::Interrupted.to_string());

@@ -1,7 +1,8 @@
 //! The command line. One file per command; only here is anything printed.
 //!
-//! Results go to standard output, everything else to standard error. Exit codes: 0 all is well, 1 a check's answer is no (a
-//! kernel was wrong, a structure is not valid, a document is not up to date), 2 something could not run, 130 Ctrl-C.
+//! Results go to standard output, everything else to standard error. Exit codes: 0 all is well or skipped, 1 a
+//! check's answer is no (a kernel was wrong, a structure is not valid, a document is not up to date), 2 something could
+//! not run, 130 Ctrl-C.
 
 mod build;
 mod camera_path;
@@ -19,14 +20,14 @@ mod report;
 mod runs;
 mod scenes;
 mod structures;
-mod sweep;
 mod tables;
 mod trace;
+mod workload;
 
 use crate::error::Result;
 use crate::harness::environment;
 use clap::error::ErrorKind;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::process::ExitCode;
 
 /// Ray tracing on a GPU with a uniform grid, a kd-tree and a BVH, measured against each other.
@@ -43,14 +44,13 @@ Begin with:
   rtbench sweep --scene bunny.ply        the same for a scene of your own
   rtbench render --scene hall -o hall.png
   rtbench devices                        what there is to measure
-  rtbench report results/RUN -o run.html what was measured, beside the thesis of 2009
+  rtbench report results/RUN -o run.html what was measured, with the numbers of 2009
 
 Exit codes: 0 all is well, 1 a check's answer is no (a kernel was wrong, a structure is not valid, a
 document is not up to date), 2 something could not run, 130 Ctrl-C.";
 
 #[derive(Subcommand)]
 enum Command {
-    Sweep(sweep::Arguments),
     Tables(tables::Arguments),
     Claims(claims::Arguments),
     Figures(figures::Arguments),
@@ -67,30 +67,43 @@ enum Command {
     Completions(completions::Arguments),
 }
 
-/// Runs the program.
-pub fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
-        Ok(cli) => cli,
-        Err(error) => return usage(&error),
-    };
-    match run(cli.command) {
-        Ok(code) => code,
-        Err(error) => {
-            output::complain(&error.to_string());
-            ExitCode::from(error.exit_code())
+/// The whole command line: the commands of this folder, and one per workload.
+fn cli() -> clap::Command {
+    let mut cli = Cli::command();
+    for (index, command) in workload::commands().into_iter().chain([workload::plan_command()]).enumerate() {
+        cli = cli.subcommand(command.display_order(index));
+    }
+    let others: Vec<String> = cli.get_subcommands().map(|command| command.get_name().to_owned()).collect();
+    for (index, name) in others.iter().enumerate() {
+        if crate::workloads::find(name).is_none() && name != "plan" {
+            cli = cli.mut_subcommand(name, |command| command.display_order(100 + index));
         }
     }
+    cli
 }
 
-/// The command that a recorded command line gave; none if this program does not know it.
-fn parse(recorded: &[String]) -> Option<Command> {
-    Some(Cli::try_parse_from(recorded).ok()?.command)
+/// Runs the program.
+pub fn main() -> ExitCode {
+    let matches = match cli().try_get_matches() {
+        Ok(matches) => matches,
+        Err(error) => return usage(&error),
+    };
+    let result = match workload::run(&matches) {
+        Some(result) => result,
+        None => match Cli::from_arg_matches(&matches) {
+            Ok(cli) => run(cli.command),
+            Err(error) => return usage(&error),
+        },
+    };
+    result.unwrap_or_else(|error| {
+        output::complain(&error.to_string());
+        ExitCode::from(error.exit_code())
+    })
 }
 
 fn run(command: Command) -> Result<ExitCode> {
     let done = |()| ExitCode::SUCCESS;
     match command {
-        Command::Sweep(arguments) => sweep::run(&arguments),
         Command::Tables(arguments) => tables::run(&arguments).map(done),
         Command::Claims(arguments) => claims::run(&arguments).map(done),
         Command::Figures(arguments) => figures::run(&arguments).map(done),

@@ -1,4 +1,4 @@
-//! Printing. A pipe that was closed is no error: whoever read from it has read enough.
+//! Printing. A closed pipe is not an error: its reader has ended, as `head` does.
 
 use crate::error::{Error, Result};
 use std::io::{ErrorKind, Write};
@@ -18,12 +18,12 @@ pub fn print(text: &str) -> Result<()> {
     }
 }
 
-/// Prints an error, on one line.
+/// Prints an error on standard error, as one line.
 pub fn complain(message: &str) {
     note(&format!("error: {}", message.replace('\n', " ")));
 }
 
-/// Prints something that the user should know, on standard error. If that is closed, nobody wants to know.
+/// Prints a note on standard error. Failures are ignored.
 pub fn note(message: &str) {
     let _ = writeln!(std::io::stderr().lock(), "rtbench: {message}");
 }

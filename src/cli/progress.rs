@@ -1,15 +1,17 @@
-//! Progress of a sweep on standard error: a bar on a terminal, plain lines elsewhere.
+//! Progress on standard error: a bar on a terminal, lines elsewhere.
 
 use super::output;
-use crate::harness::sweep::Event;
-use crate::record::schema::{ConfigurationRecord, Status};
-use crate::record::summary;
+use crate::harness::summary;
+use crate::harness::workload::{Event, Workload};
+use crate::record::row::{Row, Status};
+use crate::record::statistics;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
-/// How far a sweep is: planned work in rays, and rows.
+/// The progress of a sweep, in rays and in rows.
 pub struct Progress {
+    workload: &'static dyn Workload,
     /// `None` where standard error is no terminal.
     bar: Option<ProgressBar>,
     quiet: bool,
@@ -17,27 +19,27 @@ pub struct Progress {
     finished: usize,
     work: u64,
     done: u64,
-    /// Work behind us when the last row was finished, and when that was.
+    /// Work done when the last row was finished, and the time of that.
     last: (u64, Instant),
-    /// Seconds per unit of work, lately.
+    /// Moving average of seconds per unit of work.
     pace: Option<f64>,
 }
 
 impl Progress {
-    /// For `rows` configurations that trace about `work` rays.
-    pub fn new(rows: usize, work: u64, quiet: bool) -> Progress {
+    /// For `rows` cases of a workload with about so much work.
+    pub fn new(workload: &'static dyn Workload, rows: usize, work: u64, quiet: bool) -> Progress {
         let bar = (!quiet && std::io::stderr().is_terminal()).then(|| {
             let bar = ProgressBar::with_draw_target(Some(work.max(1)), ProgressDrawTarget::stderr());
-            // The template is a constant; a typing error in it would show in every run.
+            // The template is a constant: an error in it would show in every run.
             let style = ProgressStyle::with_template("{bar:24} {msg}").unwrap_or_else(|_| ProgressStyle::default_bar());
             bar.set_style(style);
             bar.enable_steady_tick(Duration::from_millis(500));
             bar
         });
-        Progress { bar, quiet, rows, finished: 0, work, done: 0, last: (0, Instant::now()), pace: None }
+        Progress { workload, bar, quiet, rows, finished: 0, work, done: 0, last: (0, Instant::now()), pace: None }
     }
 
-    /// Takes note of an event.
+    /// Updates the display after an event of the sweep.
     pub fn event(&mut self, event: Event) {
         match event {
             Event::Work(work) => {
@@ -46,18 +48,17 @@ impl Progress {
                     bar.set_position(self.done);
                 }
             }
-            Event::Doing(what) => {
+            Event::Doing(task) => {
                 if let Some(bar) = &self.bar {
-                    bar.set_message(format!("{}/{}{} {what}", self.finished, self.rows, self.estimate()));
+                    bar.set_message(format!("{}/{}{} {task}", self.finished, self.rows, self.estimate()));
                 }
             }
-            Event::Building(what) => match &self.bar {
-                Some(_) => self.event(Event::Doing(what)),
+            Event::Building(task) => match &self.bar {
+                Some(_) => self.event(Event::Doing(task)),
                 None if self.quiet => {}
-                None => line(None, &what),
+                None => line(None, &task),
             },
-            Event::Built(_) => {}
-            Event::Finished(record) => self.finished(record),
+            Event::Finished(row) => self.finished(row),
             Event::Kept(work) => {
                 self.finished += 1;
                 self.done = (self.done + work).min(self.work);
@@ -68,7 +69,7 @@ impl Progress {
     }
 
     /// What prints lines that stay, as this does, on other threads as well; nothing if it is to be quiet.
-    pub fn teller(&self) -> impl Fn(&str) + Send + use<> {
+    pub fn line_printer(&self) -> impl Fn(&str) + Send + use<> {
         let (bar, quiet) = (self.bar.clone(), self.quiet);
         move |text| {
             if !quiet {
@@ -77,34 +78,34 @@ impl Progress {
         }
     }
 
-    fn finished(&mut self, record: &ConfigurationRecord) {
+    fn finished(&mut self, row: &Row) {
         self.finished += 1;
         let (before, since) = self.last;
         let seconds = since.elapsed().as_secs_f64();
         let work = self.done.saturating_sub(before);
         if work > 0 {
-            // Half the weight for the newest row: structures differ much, a single one must not rule the estimate.
+            // The newest row has half the weight: structures differ much in speed, and one must not decide the
+            // estimate.
             let newest = seconds / work as f64;
             self.pace = Some(self.pace.map_or(newest, |pace| 0.5 * (pace + newest)));
         }
         self.last = (self.done, Instant::now());
-        let variant = if record.variant == "default" { String::new() } else { format!(":{}", record.variant) };
-        let what = format!(
-            "{} {}{variant} {:?} {}x{}",
-            record.scene.name, record.structure, record.config, record.width, record.height
-        );
-        if record.status == Status::Error {
-            line(self.bar.as_ref(), &format!("{}/{} {what}: ERROR: {}", self.finished, self.rows, record.message));
-        } else if self.bar.is_none() && !self.quiet {
-            let mean = summary::frame_statistics(record).map_or(0.0, |s| s.mean_ms);
-            line(
-                self.bar.as_ref(),
-                &format!("{}/{} {what}: {mean:.2} ms{}", self.finished, self.rows, self.estimate()),
-            );
+        let what = summary::label(self.workload, row);
+        let place = format!("{}/{} {what}", self.finished, self.rows);
+        match row.status {
+            Status::Ok if self.quiet || self.bar.is_some() => {}
+            Status::Ok => {
+                let mean = row.timed().and_then(statistics::frames).map_or(0.0, |frames| frames.mean_ms);
+                line(None, &format!("{place}: {mean:.2} ms{}", self.estimate()));
+            }
+            Status::Skipped if self.quiet => {}
+            Status::Skipped => line(self.bar.as_ref(), &format!("{place}: skipped: {}", row.message)),
+            Status::Wrong => line(self.bar.as_ref(), &format!("{place}: WRONG: {}", row.message)),
+            Status::Failed => line(self.bar.as_ref(), &format!("{place}: FAILED: {}", row.message)),
         }
     }
 
-    /// The time that is left, in words.
+    /// The estimated remaining time as text; empty if it is unknown.
     fn estimate(&self) -> String {
         let Some(pace) = self.pace.filter(|_| self.finished < self.rows) else { return String::new() };
         let seconds = (pace * self.work.saturating_sub(self.done) as f64).round() as u64;
@@ -115,7 +116,7 @@ impl Progress {
         }
     }
 
-    /// Takes the bar away.
+    /// Removes the bar from the terminal.
     pub fn end(&self) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
@@ -123,22 +124,23 @@ impl Progress {
     }
 }
 
-/// Says that a structure is being built: a clock that runs on a terminal, a line elsewhere. It ends when this is dropped.
+/// Shows that a structure is being built: an elapsed-time display on a terminal, a line elsewhere. Dropping it ends the
+/// display.
 pub struct Building(Option<ProgressBar>);
 
 impl Building {
-    /// `what` is being built from now on.
-    pub fn begin(what: &str) -> Building {
-        let what = format!("building {what}");
+    /// Shows `structure` as being built until this is dropped.
+    pub fn begin(structure: &str) -> Building {
+        let task = format!("building {structure}");
         if !std::io::stderr().is_terminal() {
-            line(None, &what);
+            line(None, &task);
             return Building(None);
         }
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
         let style =
             ProgressStyle::with_template("{msg} {elapsed}").unwrap_or_else(|_| ProgressStyle::default_spinner());
         bar.set_style(style);
-        bar.set_message(what);
+        bar.set_message(task);
         bar.enable_steady_tick(Duration::from_millis(500));
         Building(Some(bar))
     }
@@ -152,7 +154,7 @@ impl Drop for Building {
     }
 }
 
-/// A line that stays, above the bar if there is one.
+/// Prints a permanent line, above the bar if there is one.
 fn line(bar: Option<&ProgressBar>, text: &str) {
     match bar {
         Some(bar) => bar.println(format!("rtbench: {text}")),

@@ -6,10 +6,9 @@ use super::library::LibraryArguments;
 use super::output;
 use crate::camera::{CameraPath, View};
 use crate::error::{Error, Result};
-use crate::harness::{pictures, plan};
 use crate::record::picture;
-use crate::workloads::trace::Selection;
 use crate::workloads::trace::backend::{Config, Counters, Prepared, Size};
+use crate::workloads::trace::{Selection, pictures, rays, tracer};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -91,12 +90,12 @@ impl Heatmap {
 /// Runs the command.
 ///
 /// # Errors
-/// Whatever keeps it from making the picture.
+/// Those of loading, of building, of the device and of the output.
 pub fn run(arguments: &Arguments) -> Result<()> {
     let selection = Selection::parse(&arguments.structure)?;
     interrupt::at_once()?;
-    let config = plan::parse_config(&arguments.config)?;
-    let size = plan::parse_size(&arguments.resolution)?;
+    let config = rays::parse_config(&arguments.config)?;
+    let size = rays::parse_size(&arguments.resolution)?;
     arguments.device.check()?;
     let scene = arguments.library.load(&arguments.scene)?;
     let path = CameraPath::named_or_fitting(arguments.camera_path.as_deref(), &scene, config.shadows())?;
@@ -106,10 +105,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         Error::argument("--frame", problem, format!("give 0 to {}", views.len().saturating_sub(1)))
     })?;
     let device = arguments.device.open()?;
-    plan::check_size(size, device.backend.info())?;
     device::announce(&device);
     let built = selection.build(&scene, arguments.device.threads)?;
-    let mut prepared = device.backend.prepare(&scene, &built.structure, selection.method())?;
+    let mut prepared = tracer::prepare(&device.device, &scene, &*built.structure, selection.method())?;
     let rgba = match arguments.heatmap {
         None => pictures::image(&mut *prepared, config, view, size)?,
         Some(heatmap) => paint(heatmap, arguments.scale_max, &mut *prepared, config, view, size)?,

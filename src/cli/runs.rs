@@ -1,58 +1,119 @@
-//! What the readers of recorded runs share: their arguments, and where their output goes.
+//! What the readers of recorded runs share: their arguments, and the destinations of their output.
 
 use super::output;
 use crate::error::{Error, Result};
 use crate::record::files;
-use crate::thesis::data::Data;
-use crate::thesis::runs::RecordedRun;
-use crate::thesis::splice::{self, Block, Need};
-use crate::thesis::{measured, published};
+use crate::report::splice::{self, Block, Need};
+use crate::sources::runs::RecordedRun;
+use crate::sources::{self, Options, Results, Rows, Source, convention::Convention};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
-/// Recorded runs.
+/// Recorded runs, and the sources that show them.
 #[derive(Args, Debug)]
 pub struct RunArguments {
-    /// Folders of recorded runs, as `rtbench sweep` writes them; none: the thesis's published numbers
+    /// Folders of recorded runs, as `rtbench sweep` writes them; none: the published numbers
     #[arg(value_name = "RUN")]
     runs: Vec<PathBuf>,
+    /// Source of tables, figures and claims: thesis [default: every source that the runs fit]
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    source: Vec<String>,
 }
 
-/// What there is to read.
-pub struct Sources {
-    /// The runs; empty for the published numbers.
+/// What tables show.
+#[derive(Args, Debug)]
+pub struct OptionArguments {
+    /// Side of the square image in tables of one size [default: the largest of the source's sizes at which nearly every
+    /// scene was measured; the thesis's are 1024, 768, 512, 256]
+    #[arg(long, value_name = "PIXELS")]
+    resolution: Option<u32>,
+    /// What a step of a tree is, in tables of counts
+    #[arg(long, value_enum, default_value_t)]
+    convention: Convention,
+    /// Which rows tables have
+    #[arg(long, value_enum, default_value_t)]
+    pub rows: Rows,
+}
+
+/// A published device.
+#[derive(Args, Debug)]
+pub struct DeviceArguments {
+    /// The device whose published numbers are shown or compared with: GTX280, 8600GT [default: each table's own; the
+    /// thesis has 8600GT in 5.7 and B.4 to B.6, GTX280 in the others]
+    #[arg(long, alias = "card", value_name = "NAME")]
+    device: Option<String>,
+}
+
+/// Runs, and their numbers for each source.
+pub struct Opened {
+    /// The runs; empty for published numbers.
     pub runs: Vec<RecordedRun>,
-    /// Their numbers, or the published ones.
-    pub data: Data,
-    /// The published ones.
-    pub published: Data,
+    /// The sources that were named, or all that fit.
+    pub sources: Vec<&'static Source>,
+    /// The numbers, one for each source.
+    pub results: Vec<Box<dyn Results>>,
 }
 
 impl RunArguments {
-    /// Reads them, and says what has to be said about them.
-    pub fn read(&self) -> Result<Sources> {
+    /// Reads the runs, and prints what a reader should know about them.
+    ///
+    /// # Errors
+    /// A run that cannot be read, an unknown source.
+    pub fn read(&self) -> Result<Opened> {
         let runs = RecordedRun::read_all(&self.runs)?;
-        let published = published::data();
-        let data = if runs.is_empty() { published.clone() } else { measured::data(&runs) };
-        for note in &data.notes {
-            output::note(note);
+        let sources = sources::select(&self.source, &runs)?;
+        let results: Vec<Box<dyn Results>> = sources.iter().map(|source| (source.read)(&runs)).collect();
+        let mut printed: Vec<&str> = Vec::new();
+        for note in results.iter().flat_map(|results| results.notes()) {
+            // Several sources say the same about a run
+            if !printed.contains(&note.as_str()) {
+                output::note(note);
+                printed.push(note);
+            }
         }
-        Ok(Sources { runs, data, published })
+        Ok(Opened { runs, sources, results })
     }
 }
 
-/// Prints, or writes a file whole.
-pub fn deliver(text: &str, file: Option<&Path>) -> Result<()> {
+impl Opened {
+    /// The sources with their numbers.
+    pub fn each(&self) -> impl Iterator<Item = (&'static Source, &dyn Results)> {
+        self.sources.iter().copied().zip(self.results.iter().map(|results| &**results))
+    }
+}
+
+impl DeviceArguments {
+    /// The device's index in each source; none: each table's own.
+    ///
+    /// # Errors
+    /// A device that no source has.
+    pub fn select(&self, sources: &[&'static Source]) -> Result<Vec<Option<usize>>> {
+        match &self.device {
+            Some(name) => sources::select_device(sources, name),
+            None => Ok(vec![None; sources.len()]),
+        }
+    }
+}
+
+impl OptionArguments {
+    /// The options for a source.
+    pub fn options(&self, published: bool, device: Option<usize>) -> Options {
+        Options { published, device, resolution: self.resolution, convention: self.convention, rows: self.rows }
+    }
+}
+
+/// Prints a text, or writes a file whole.
+pub fn write_or_print(text: &str, file: Option<&Path>) -> Result<()> {
     match file {
         Some(path) => files::replace(path, text.as_bytes()),
         None => output::print(text),
     }
 }
 
-/// A document that has a place for what a command writes.
+/// A document with a place for a command's output.
 #[derive(Args, Debug)]
 pub struct Into {
-    /// Replace what stands between <!-- rtbench:NAME --> and <!-- /rtbench:NAME --> in this document, as Markdown; NAME is
+    /// Replace the text between <!-- rtbench:NAME --> and <!-- /rtbench:NAME --> in this document, as Markdown; NAME is
     /// a table's number, or `claims`
     #[arg(long, value_name = "FILE", conflicts_with_all = ["output", "format"])]
     into: Option<PathBuf>,
@@ -65,10 +126,15 @@ impl Into {
     /// Puts the blocks in their places; false if no document was named.
     ///
     /// # Errors
-    /// A document that cannot be read or written, or has no place for them; with --check
-    /// [`Error::NotUpToDate`] for one that would change.
-    pub fn splice(&self, blocks: impl FnOnce() -> Vec<Block>, need: Need) -> Result<bool> {
+    /// A document that cannot be read or written, or has no place for them; two sources, whose numbers of tables mean
+    /// different tables; with --check [`Error::NotUpToDate`] for a document that would change.
+    pub fn splice(&self, opened: &Opened, blocks: impl FnOnce() -> Vec<Block>, need: Need) -> Result<bool> {
         let Some(path) = &self.into else { return Ok(false) };
+        if opened.sources.len() > 1 {
+            let names: Vec<&str> = opened.sources.iter().map(|source| source.name).collect();
+            let hint = format!("--source with one of {}", names.join(", "));
+            return Err(Error::argument("--into", "several sources have tables of the same numbers", hint));
+        }
         let text = std::fs::read_to_string(path)
             .map_err(|e| Error::file(path, None, format!("cannot read: {e}"), "give a text file with markers"))?;
         let new = splice::splice(path, &text, &blocks(), need)?;

@@ -2,7 +2,7 @@
 
 use super::output;
 use crate::error::Result;
-use crate::thesis::format::wrap;
+use crate::report::wrap::wrap;
 use crate::workloads::trace::{self, OptionInfo};
 use clap::Args;
 
@@ -19,12 +19,12 @@ const INDENT: &str = "                     ";
 /// Standard output's.
 pub fn run(_: &Arguments) -> Result<()> {
     let mut text = String::from("Structures, as NAME or NAME:KEY=VALUE,...\n");
-    for variant in trace::variants() {
-        text += &format!("\n  {}\n      {}\n", variant.name, variant.summary);
-        if !variant.paper.is_empty() {
-            text += &format!("      after {}\n", variant.paper);
+    for algorithm in trace::algorithms() {
+        text += &format!("\n  {}\n      {}\n", algorithm.name, algorithm.summary);
+        if !algorithm.paper.is_empty() {
+            text += &format!("      after {}\n", algorithm.paper);
         }
-        text += &variant.build_options.iter().chain(variant.walk_options).map(describe).collect::<String>();
+        text += &algorithm.own_options().map(describe).collect::<String>();
     }
     text += "\nOptions of all structures\n";
     text += &trace::COMMON_OPTIONS.iter().map(describe).collect::<String>();

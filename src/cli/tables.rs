@@ -1,49 +1,40 @@
-//! `rtbench tables`: the thesis's tables, published or measured.
+//! `rtbench tables`: the tables of sources, published or measured.
 
 use super::output;
-use super::runs::{Into, RunArguments, deliver};
-use crate::error::{Error, Result};
-use crate::thesis::convention::Convention;
-use crate::thesis::data::Data;
-use crate::thesis::format::{self, Format};
-use crate::thesis::splice::{Block, Need};
-use crate::thesis::table::Table;
-use crate::thesis::tables::{self, Options, Rows, side};
+use super::runs::{DeviceArguments, Into, OptionArguments, RunArguments, write_or_print};
+use crate::error::Result;
+use crate::report::Table;
+use crate::report::format::{self, Format};
+use crate::report::splice::{Block, Need};
+use crate::sources::{self, Rows, without_numbers};
 use clap::Args;
 use std::path::PathBuf;
 
-/// Print the thesis's tables, from recorded runs or as published
+/// Print the tables of the thesis (or another source), from recorded runs or as published
 ///
-/// Without a run: the numbers that the thesis printed. With runs: the same tables of what was measured. The same runs
-/// always give the same bytes.
+/// Without a run: the published numbers. With runs: the same tables of measured numbers. The same runs always give the
+/// same bytes.
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
     #[command(flatten)]
     runs: RunArguments,
-    /// Tables by their numbers: 5.1 to 5.14, 5.3.4 (speed-ups between devices), B.1 to B.6, or all
+    /// Tables by their numbers, or all; the thesis has 5.1 to 5.14, 5.3.4 (speed-ups between devices) and B.1 to B.6
     #[arg(long, default_value = "all", value_name = "LIST")]
     table: String,
-    /// Form of the tables
+    /// Format of the tables
     #[arg(long, value_enum, default_value_t)]
     format: Format,
-    /// Put the published number and the ratio to it beside each measured one
-    #[arg(long, value_parser = ["thesis"])]
+    /// Print the published number and the ratio to it below each measured one
+    #[arg(long)]
+    published: bool,
+    /// The former spelling of --published
+    #[arg(long, value_parser = ["thesis"], hide = true)]
     beside: Option<String>,
-    /// The thesis's card whose numbers are shown, alone or beside measured ones [default: each table's own, 8600GT for
-    /// 5.7 and B.4 to B.6, GTX280 for the others]
-    #[arg(long, value_name = "GTX280|8600GT")]
-    card: Option<String>,
-    /// Side of the square image in tables 5.12 to 5.14 [default: the largest of the thesis's (1024, 768, 512, 256) at
-    /// which nearly every scene was measured]
-    #[arg(long, value_name = "PIXELS")]
-    resolution: Option<u32>,
-    /// What a step of a tree is, in tables 5.10 and 5.11
-    #[arg(long, value_enum, default_value_t)]
-    convention: Convention,
-    /// Which rows to print
-    #[arg(long, value_enum, default_value_t)]
-    rows: Rows,
+    #[command(flatten)]
+    device: DeviceArguments,
+    #[command(flatten)]
+    options: OptionArguments,
     /// Write to a file instead of standard output
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -55,8 +46,8 @@ const EXAMPLES: &str = "\
 Examples:
   rtbench tables
       everything that the thesis printed
-  rtbench tables results/RUN --beside thesis --table 5.4,5.5,5.6
-      the structures of a run beside the published ones
+  rtbench tables results/RUN --published --table 5.4,5.5,5.6
+      the structures of a run, each number with the published one
   rtbench tables results/A results/B --table 5.2,5.3.4,B.1 --format markdown
       two devices, and how much faster one is
   rtbench tables results/RUN --format csv -o tables.csv
@@ -67,36 +58,35 @@ Examples:
 /// Runs the command.
 ///
 /// # Errors
-/// A run that cannot be read, an unknown table or card, output that cannot be written.
+/// A run that cannot be read, an unknown source, table or device, output that cannot be written.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let ids = tables::select(&arguments.table)?;
-    let sources = arguments.runs.read()?;
-    if arguments.beside.is_some() && sources.runs.is_empty() {
-        output::note("nothing stands beside the published numbers: give a run");
+    let opened = arguments.runs.read()?;
+    let ids = sources::select_tables(&opened.sources, &arguments.table)?;
+    let devices = arguments.device.select(&opened.sources)?;
+    let published = arguments.published || arguments.beside.is_some();
+    if published && opened.runs.is_empty() {
+        output::note("there is nothing to compare the published numbers with: give a run");
     }
-    let card = arguments.card.as_deref().map(|name| card(&sources.published, name)).transpose()?;
-    let options = Options {
-        beside: arguments.beside.is_some(),
-        convention: arguments.convention,
-        resolution: arguments.resolution.unwrap_or_else(|| side::usual(&sources.data, card.unwrap_or(0))),
-        card,
-        rows: arguments.rows,
-    };
-    let mut tables = tables::build(&sources.data, &sources.published, &options, &ids);
-    let (all, need) =
-        if ids.len() == tables::IDS.len() { (&tables::IDS[..], Need::Any) } else { (&ids[..], Need::All) };
-    if arguments.into.splice(|| blocks(&tables, all), need)? {
+    let is_all = arguments.table.eq_ignore_ascii_case("all");
+    let mut tables: Vec<Table> = Vec::new();
+    let mut empty: Vec<&str> = Vec::new();
+    for (((_, results), ids), device) in opened.each().zip(&ids).zip(&devices) {
+        let options = arguments.options.options(published, *device);
+        tables.extend(results.tables(ids, &options));
+        empty.extend(without_numbers(results, ids, &options));
+    }
+    let need = if is_all { Need::Any } else { Need::All };
+    if arguments.into.splice(&opened, || blocks(&tables, &ids.concat()), need)? {
         return Ok(());
     }
-    let empty = tables::without_numbers(&sources.data, &sources.published, &options, &ids);
-    if !empty.is_empty() && !sources.runs.is_empty() {
+    if !empty.is_empty() && !opened.runs.is_empty() {
         output::note(&format!("nothing was measured for: {}", empty.join(", ")));
     }
-    if arguments.rows == Rows::Measured && need == Need::Any {
-        // Named by the line above; a table that was asked for by its number stands in any case
+    if arguments.options.rows == Rows::Measured && is_all {
+        // The note names them; a table that was asked for by its number is printed without rows
         tables.retain(|table| !table.rows.is_empty());
     }
-    deliver(&format::write(&tables, arguments.format), arguments.output.as_deref())
+    write_or_print(&format::write(&tables, arguments.format), arguments.output.as_deref())
 }
 
 /// A block per number, with all its tables.
@@ -106,13 +96,4 @@ fn blocks(tables: &[Table], ids: &[&str]) -> Vec<Block> {
         ((*id).to_owned(), format::write(&own, Format::Markdown))
     };
     ids.iter().map(of).collect()
-}
-
-/// A published card by its name.
-pub fn card(published: &Data, name: &str) -> Result<usize> {
-    let found = published.devices.iter().position(|d| d.label.eq_ignore_ascii_case(name));
-    found.ok_or_else(|| {
-        let names: Vec<&str> = published.devices.iter().map(|d| d.label.as_str()).collect();
-        Error::argument("--card", format!("the thesis has no card '{name}'"), format!("one of {}", names.join(", ")))
-    })
 }

@@ -7,9 +7,8 @@ use super::output;
 use crate::error::Result;
 use crate::math::MISS;
 use crate::record::files;
-use crate::record::rays_csv;
-use crate::workloads::trace::Selection;
 use crate::workloads::trace::backend::GivenRay;
+use crate::workloads::trace::{Selection, rays_csv, tracer};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -18,8 +17,8 @@ use std::path::PathBuf;
 /// The file's first line names its columns: origin_x, origin_y, origin_z, direction_x, direction_y, direction_z, in any
 /// order; others are ignored. Origins are in the coordinates of the scene's file, up to 1e18, and directions have any
 /// length. The result has a line t,triangle for each ray: the distance in units of the direction's
-/// length and the triangle's index in the file, polygons counted as fans; empty and -1 for a miss. With --any-hit it only
-/// says whether something is hit: 0,0 or a miss.
+/// length and the triangle's index in the file, polygons counted as fans; empty and -1 for a miss. With --any-hit it
+/// only says whether something is hit: 0,0 or a miss.
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
@@ -52,20 +51,20 @@ Examples:
 /// Runs the command.
 ///
 /// # Errors
-/// Whatever keeps it from tracing all rays.
+/// Those of reading, of building, of the device and of the output.
 pub fn run(arguments: &Arguments) -> Result<()> {
     let selection = Selection::parse(&arguments.structure)?;
     interrupt::at_once()?;
     arguments.device.check()?;
-    files::keep(&arguments.out, [arguments.rays.as_path()].into_iter())?;
+    files::refuse_overwrite(&arguments.out, [arguments.rays.as_path()].into_iter())?;
     let exact = rays_csv::read_exact(&arguments.rays)?;
     let (scene, sources) = arguments.library.load_with_sources(&arguments.scene)?;
     let rays: Vec<_> = exact.iter().map(|ray| ray.place(&scene.placement)).collect();
-    files::keep(&arguments.out, sources.paths())?;
+    files::refuse_overwrite(&arguments.out, sources.paths())?;
     let device = arguments.device.open()?;
     device::announce(&device);
     let built = selection.build(&scene, arguments.device.threads)?;
-    let mut prepared = device.backend.prepare(&scene, &built.structure, selection.method())?;
+    let mut prepared = tracer::prepare(&device.device, &scene, &*built.structure, selection.method())?;
     let given: Vec<GivenRay> = rays.iter().map(|ray| ray.ray).collect();
     let hits = prepared.trace(&given, arguments.any_hit)?;
     rays_csv::write(&arguments.out, &rays, &hits)?;

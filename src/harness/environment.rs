@@ -1,6 +1,6 @@
-//! What stands in a run's provenance about the program and the machine.
+//! The program and the machine, for a run's provenance.
 
-use crate::record::schema::{Environment, Program};
+use crate::record::run::{Environment, Program};
 use sysinfo::{CpuRefreshKind, MemoryRefreshKind, RefreshKind, System};
 
 /// Beginnings of the names of environment variables that change what is measured: the software rasteriser's and the

@@ -1,10 +1,10 @@
-//! Counting and timing one configuration that has been verified.
+//! Timing one case that has been verified, and what the samples say about themselves.
 
-use crate::camera::View;
+use super::workload::{Case, Run};
+use crate::device::FrameTime;
 use crate::error::{Error, Result};
-use crate::record::schema::{CounterSums, Samples, TimingSource};
+use crate::record::row::{Samples, TimingSource};
 use crate::record::statistics;
-use crate::workloads::trace::backend::{Config, FrameTime, Interrupted, Prepared, Size};
 use std::time::Instant;
 
 /// Device and wall time may differ by this share before a warning says so.
@@ -13,72 +13,29 @@ const DISAGREEMENT: f64 = 0.10;
 /// A first pass slower than the others by this factor is worth a warning: something was not warm yet.
 const SLOW_START: f64 = 1.2;
 
-/// What the counting kernel found on a path.
-pub struct Counted {
-    /// Over all frames, by ray type.
-    pub sums: [CounterSums; 3],
-    /// First frame, RGBA8: must be the timed kernel's to the bit.
-    pub first_image: Vec<u8>,
-}
-
-/// Renders every frame once with the counting kernel and adds up.
-///
-/// # Errors
-/// The device's, or [`Error::Interrupted`] between frames.
-pub fn count(
-    prepared: &mut dyn Prepared,
-    config: Config,
-    views: &[View],
-    size: Size,
-    interrupted: Interrupted,
-    counted_frame: &mut dyn FnMut(),
-) -> Result<Counted> {
-    let mut sums = [CounterSums::default(); 3];
-    let mut first_image = Vec::with_capacity(size.pixels() * 4);
-    for (frame, view) in views.iter().enumerate() {
-        if interrupted() {
-            return Err(Error::Interrupted);
-        }
-        prepared.counted(config, view, size, &mut |_, pixels| {
-            for pixel in pixels {
-                for (sum, counters) in sums.iter_mut().zip(&pixel.counters) {
-                    sum.add(counters);
-                }
-                if frame == 0 {
-                    first_image.extend_from_slice(&pixel.pixel.rgba.to_le_bytes());
-                }
-            }
-        })?;
-        counted_frame();
-    }
-    Ok(Counted { sums, first_image })
-}
-
 /// No samples yet.
-pub fn no_samples() -> Samples {
-    Samples { device_ns: Some(Vec::new()), ..Samples::default() }
+pub fn no_samples(stages: Vec<String>) -> Samples {
+    let stage_ns = (stages.len() > 1).then(Vec::new);
+    let stages = if stages.len() > 1 { stages } else { Vec::new() };
+    Samples { stages, stage_ns, device_ns: Some(Vec::new()), ..Samples::default() }
 }
 
-/// Runs `warm_up`, which is not timed, then times one pass over a path and adds it to the samples.
+/// Runs so many frames to warm up, which are not timed, then times one pass over a case's frames and adds it to the
+/// samples.
 ///
 /// # Errors
-/// The device's, or [`Error::Interrupted`].
-pub fn pass(
-    prepared: &mut dyn Prepared,
-    (config, size): (Config, Size),
-    warm_up: &[View],
-    views: &[View],
-    interrupted: Interrupted,
-    samples: &mut Samples,
-) -> Result<()> {
-    if !warm_up.is_empty() {
-        prepared.time_path(config, warm_up, size, interrupted)?;
+/// Those of [`Run::pass`]; [`Error::Device`] for a pass of another length than the ones before it.
+pub fn pass(run: &mut dyn Run, case: &Case, warm_up: usize, samples: &mut Samples) -> Result<()> {
+    if warm_up > 0 {
+        run.pass(case, Some(warm_up))?;
     }
     let start = Instant::now();
-    let frames = prepared.time_path(config, views, size, interrupted)?;
+    let frames = run.pass(case, None)?;
     samples.pass_ns.push(start.elapsed().as_nanos() as u64);
-    if frames.len() != views.len() {
-        return Err(Error::Device(format!("{} of {} frames came back", frames.len(), views.len())));
+    if let Some(before) = samples.wall_ns.first()
+        && before.len() != frames.len()
+    {
+        return Err(Error::Device(format!("{} of {} frames came back", frames.len(), before.len())));
     }
     push(samples, &frames);
     Ok(())
@@ -91,6 +48,9 @@ fn push(samples: &mut Samples, frames: &[FrameTime]) {
     match (device, &mut samples.device_ns) {
         (Some(device), Some(passes)) => passes.push(device),
         _ => samples.device_ns = None,
+    }
+    if let Some(stages) = &mut samples.stage_ns {
+        stages.push(frames.iter().map(|f| f.stages.clone()).collect());
     }
 }
 
@@ -130,7 +90,7 @@ fn disagreement(device: &[Vec<u64>], wall: &[Vec<u64>]) -> Option<String> {
     })
 }
 
-/// A warning where the first pass stands out.
+/// A warning where the first pass is much slower than the others.
 fn slow_start(samples: &Samples, source: TimingSource) -> Option<String> {
     let passes = match source {
         TimingSource::Device => samples.device_ns.as_ref()?,

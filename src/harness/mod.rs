@@ -1,14 +1,18 @@
-//! Measuring: the plan of a sweep, verification before timing, the clock, the machine's description. Only here (and
-//! in build statistics) is a clock read. What is measured leaves as [`crate::record`] records and nothing else.
+//! Measuring, for all workloads alike: the plan of a run, verification before timing, the order of passes, the clock,
+//! the journal, and resuming. What is measured leaves as [`crate::record`] rows and nothing else. Outside of it only
+//! devices and builders read a clock.
 
-pub mod batch;
-pub mod building;
-pub mod configuration;
 pub mod environment;
+mod failure;
 pub mod measure;
-pub mod pictures;
-pub mod plan;
+mod order;
+mod plan;
 pub mod preset;
-pub mod resume;
-pub mod sweep;
-pub mod verify;
+pub mod previous;
+pub mod run;
+pub mod summary;
+mod turns;
+pub mod workload;
+
+pub use order::order;
+pub use plan::{Plan, Request, parse_list, split_list};

@@ -5,9 +5,9 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Writes a file by way of a temporary neighbour and a rename, so that a reader never sees half of it and a full disk
-/// leaves the old one. What is no regular file (`/dev/stdout`, a pipe) is written to directly: replacing a device node
-/// by a file would be a nasty surprise.
+/// Writes a file by way of a temporary file in the same folder and a rename, so that a reader never sees half of it and
+/// a full disk leaves the old one. What is no regular file (`/dev/stdout`, a pipe) is written to directly: replacing a
+/// device node by a file would be a nasty surprise.
 ///
 /// # Errors
 /// [`Error::Output`].
@@ -18,7 +18,7 @@ pub fn replace(path: &Path, content: &[u8]) -> Result<()> {
         let mut file = fs::OpenOptions::new().write(true).open(&path).map_err(|source| Error::output(&path, source))?;
         return file.write_all(content).map_err(|source| Error::output(&path, source));
     }
-    let temporary = neighbour(&path);
+    let temporary = temp_path(&path);
     let written = fs::File::create(&temporary)
         .and_then(|mut file| {
             file.write_all(content)?;
@@ -32,11 +32,11 @@ pub fn replace(path: &Path, content: &[u8]) -> Result<()> {
     })
 }
 
-/// Refuses to write over a file that is read, by whatever name or link.
+/// Refuses to write over a file that is read, under any name or link.
 ///
 /// # Errors
 /// [`Error::Input`] that names both.
-pub fn keep<'a>(out: &Path, mut inputs: impl Iterator<Item = &'a Path>) -> Result<()> {
+pub fn refuse_overwrite<'a>(out: &Path, mut inputs: impl Iterator<Item = &'a Path>) -> Result<()> {
     match inputs.find(|input| is_same(input, out)) {
         None => Ok(()),
         Some(input) => {
@@ -66,8 +66,8 @@ fn is_linked(_: &Path, _: &Path) -> bool {
     false
 }
 
-/// A name beside `path` that no other process uses.
-fn neighbour(path: &Path) -> PathBuf {
+/// A name in the folder of `path` that no other process uses.
+fn temp_path(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(format!(".{}.part", std::process::id()));
     path.with_file_name(name)

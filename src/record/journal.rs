@@ -1,8 +1,10 @@
 //! The journal of a run: append-only, one JSON record per line, on disk as soon as it is written.
 
+use super::row::{Artifact, Input, Key, Row, SCHEMA, Status};
+use super::run::{End, Provenance, Resumed};
 use crate::error::{Error, Result};
 use crate::record::files;
-use crate::record::schema::{ConfigurationRecord, End, Identity, Provenance, Record, Resumed, SCHEMA, StructureRecord};
+use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{ErrorKind, Read, Write};
@@ -20,6 +22,24 @@ pub fn folder_of(run: &Path) -> PathBuf {
         },
         _ => run.to_owned(),
     }
+}
+
+/// One line of a journal.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "record", rename_all = "kebab-case")]
+pub enum Record {
+    /// Where the run comes from: always the first line.
+    Run(Box<Provenance>),
+    /// Something that rows were measured on; written before the first of them.
+    Input(Box<Input>),
+    /// Something that was built for rows; written before the first of them.
+    Artifact(Box<Artifact>),
+    /// A case that was measured, or the reason why it was not.
+    Row(Box<Row>),
+    /// The run ended in order; absent where the process was killed.
+    End(End),
+    /// The run was resumed: what follows was measured from here on.
+    Resumed(Box<Resumed>),
 }
 
 /// Appends records.
@@ -49,8 +69,8 @@ impl JournalWriter {
         Ok(writer)
     }
 
-    /// Opens the journal of a run that is taken up again, cuts off what is left of a half-written last line, and notes
-    /// the resumption. `known` is the number of bytes that the caller has read of it.
+    /// Opens the journal of a run that is resumed, truncates a partial last line, and records the resumption. `known`
+    /// is the number of bytes that the caller has read of it.
     ///
     /// # Errors
     /// [`Error::Output`], or [`Error::Input`] if another sweep is writing it or has written to it since.
@@ -85,7 +105,7 @@ impl JournalWriter {
         let mut line = serde_json::to_vec(record).map_err(|e| output(e.into()))?;
         line.push(b'\n');
         if let Err(source) = self.file.write_all(&line) {
-            // Half a line is tolerated by the reader; none is nicer.
+            // Truncate the partial line; readers would tolerate it.
             let _ = self.file.set_len(self.length);
             return Err(output(source));
         }
@@ -100,7 +120,8 @@ impl JournalWriter {
     }
 }
 
-/// Keeps other sweeps away from a journal for as long as the file is open. Where the file system knows no locks, nothing does.
+/// Keeps other sweeps away from a journal for as long as the file is open. Where the file system knows no locks,
+/// nothing does.
 fn lock(path: &Path, file: &File) -> Result<()> {
     match file.try_lock() {
         Err(TryLockError::WouldBlock) => Err(being_written(path)),
@@ -117,35 +138,75 @@ fn being_written(path: &Path) -> Error {
 pub struct Journal {
     /// First line.
     pub provenance: Provenance,
-    /// In the order of building.
-    pub structures: Vec<StructureRecord>,
-    /// In the order of measuring; one that was tried again after the run was resumed stands where it first stood.
-    pub configurations: Vec<ConfigurationRecord>,
-    /// Each time that the run was taken up again.
+    /// In the order in which they were opened.
+    pub inputs: Vec<Input>,
+    /// In the order in which they were built.
+    pub artifacts: Vec<Artifact>,
+    /// In the order of measuring; a row that was measured again after the run was resumed is where it first was.
+    pub rows: Vec<Row>,
+    /// Each time that the run was resumed.
     pub resumed: Vec<Resumed>,
     /// Last line, if the run ended in order.
     pub end: Option<End>,
-    /// What had to be left out, in words: a last line that was cut off.
+    /// What had to be left out: a last line that was cut off.
     pub truncated: Option<String>,
     /// Bytes of the file.
     pub length: u64,
 }
 
+/// The bytes of a run's journal.
+///
+/// # Errors
+/// [`Error::Input`] if it cannot be read.
+pub fn bytes_of(path: &Path) -> Result<Vec<u8>> {
+    std::fs::read(path).map_err(|e| {
+        Error::file(path, None, format!("cannot read: {e}"), "give the folder of a run, as `rtbench sweep` writes it")
+    })
+}
+
+/// The lines of a journal with their numbers, and what had to be left out.
+pub type Lines<T> = (Vec<(usize, T)>, Option<String>);
+
+/// The lines of a journal as JSON with their numbers, which count from 1, and what had to be left out: a last line that
+/// is cut off.
+///
+/// # Errors
+/// [`Error::Input`] with file and line for a line that `parse` refuses.
+pub fn lines<T>(path: &Path, bytes: &[u8], parse: impl Fn(&[u8]) -> serde_json::Result<T>) -> Result<Lines<T>> {
+    let mut records = Vec::new();
+    for (index, line) in bytes.split_inclusive(|&b| b == b'\n').enumerate() {
+        let number = index + 1;
+        match parse(line) {
+            Ok(record) => records.push((number, record)),
+            Err(_) if !line.ends_with(b"\n") && number > 1 => {
+                return Ok((records, Some(format!("line {number} of {} is cut off and left out", path.display()))));
+            }
+            Err(e) => {
+                let hint = "it is no journal of rtbench, or it was edited";
+                return Err(Error::file(path, Some(number), format!("not a record: {e}"), hint));
+            }
+        }
+    }
+    Ok((records, None))
+}
+
+/// The schema that a journal's first line names; `None` if that is not a line of a journal.
+pub fn schema_of(bytes: &[u8]) -> Option<String> {
+    #[derive(serde::Deserialize)]
+    struct First {
+        schema: String,
+    }
+    let line = bytes.split_inclusive(|&b| b == b'\n').next()?;
+    Some(serde_json::from_slice::<First>(line).ok()?.schema)
+}
+
 impl Journal {
-    /// Reads a journal. A last line that was cut off is left out, and said to be.
+    /// Reads a journal of the current schema. A last line that was cut off is left out, and said to be.
     ///
     /// # Errors
     /// [`Error::Input`] with file and line for anything else that is not a journal of this schema.
     pub fn read(path: &Path) -> Result<Journal> {
-        let bytes = std::fs::read(path).map_err(|e| {
-            Error::file(
-                path,
-                None,
-                format!("cannot read: {e}"),
-                "give the folder of a run, as `rtbench sweep` writes it",
-            )
-        })?;
-        Journal::parse(path, &bytes)
+        Journal::parse(path, &bytes_of(path)?)
     }
 
     /// Parses the bytes of a journal; `path` is for messages.
@@ -153,60 +214,66 @@ impl Journal {
     /// # Errors
     /// As [`Journal::read`].
     pub fn parse(path: &Path, bytes: &[u8]) -> Result<Journal> {
-        let mut provenance: Option<Provenance> = None;
-        let (mut structures, mut configurations, mut end, mut truncated) = (Vec::new(), Vec::new(), None, None);
-        let mut resumed = Vec::new();
-        let mut places: HashMap<Identity, usize> = HashMap::new();
-        for (index, line) in bytes.split_inclusive(|&b| b == b'\n').enumerate() {
-            let number = index + 1;
-            let record = match serde_json::from_slice::<Record>(line) {
-                Ok(record) => record,
-                Err(_) if !line.ends_with(b"\n") && number > 1 => {
-                    truncated = Some(format!("line {number} of {} is cut off and left out", path.display()));
-                    break;
-                }
-                Err(e) => {
-                    let hint = "it is no journal of rtbench, or it was edited";
-                    return Err(Error::file(path, Some(number), format!("not a record: {e}"), hint));
-                }
-            };
-            match (record, provenance.is_some()) {
-                (Record::Run(run), false) if run.schema == SCHEMA => provenance = Some(*run),
-                (Record::Run(run), false) => {
-                    let problem = format!("schema {:?} instead of {SCHEMA:?}", run.schema);
-                    return Err(Error::file(path, Some(number), problem, "read it with the version that wrote it"));
-                }
-                (_, false) => {
-                    return Err(Error::file(path, Some(number), "the first line is no run's provenance", ""));
-                }
-                (Record::Run(_), true) => {
+        if let Some(other) = schema_of(bytes).filter(|schema| schema != SCHEMA) {
+            let problem = format!("schema {other:?} instead of {SCHEMA:?}");
+            return Err(Error::file(path, Some(1), problem, "read it with the version that wrote it"));
+        }
+        let (records, truncated) = lines(path, bytes, |line| serde_json::from_slice::<Record>(line))?;
+        let mut records = records.into_iter();
+        let provenance = match records.next() {
+            Some((_, Record::Run(run))) => *run,
+            Some((number, _)) => {
+                return Err(Error::file(path, Some(number), "the first line is no run's provenance", ""));
+            }
+            None => return Err(Error::file(path, None, "empty", "the run was killed before it began")),
+        };
+        let mut journal = Journal {
+            provenance,
+            inputs: Vec::new(),
+            artifacts: Vec::new(),
+            rows: Vec::new(),
+            resumed: Vec::new(),
+            end: None,
+            truncated,
+            length: bytes.len() as u64,
+        };
+        let mut known: HashMap<(Key, usize), usize> = HashMap::new();
+        for (number, record) in records {
+            match record {
+                Record::Run(_) => {
                     let hint = "journals of several runs must not be joined";
                     return Err(Error::file(path, Some(number), "a second provenance", hint));
                 }
-                (Record::Structure(structure), true) => structures.push(*structure),
-                (Record::Configuration(configuration), true) => {
-                    // Without a resumption nothing is measured twice, and nothing is taken for it
-                    match places.get(&configuration.identity()) {
-                        Some(&place) if !resumed.is_empty() => configurations[place] = *configuration,
+                Record::Input(input) => journal.inputs.push(*input),
+                Record::Artifact(artifact) => journal.artifacts.push(*artifact),
+                Record::Row(row) => {
+                    // Only a resumed run measures a case again
+                    let key = (row.key.clone(), row.device);
+                    match known.get(&key) {
+                        Some(&index) if !journal.resumed.is_empty() => journal.rows[index] = *row,
                         _ => {
-                            places.insert(configuration.identity(), configurations.len());
-                            configurations.push(*configuration);
+                            known.insert(key, journal.rows.len());
+                            journal.rows.push(*row);
                         }
                     }
                 }
-                (Record::End(last), true) => end = Some(last),
-                (Record::Resumed(again), true) => {
-                    resumed.push(*again);
-                    end = None;
+                Record::End(end) => journal.end = Some(end),
+                Record::Resumed(resumed) => {
+                    journal.resumed.push(*resumed);
+                    journal.end = None;
+                    // Without an input their keys are not complete; the resumed run tries them again
+                    journal.rows.retain(|row| row.status != Status::Failed || !row.key.inputs.is_empty());
+                    let rows = journal.rows.iter().enumerate();
+                    known = rows.map(|(index, row)| ((row.key.clone(), row.device), index)).collect();
                 }
             }
         }
-        match provenance {
-            Some(provenance) => {
-                let length = bytes.len() as u64;
-                Ok(Journal { provenance, structures, configurations, resumed, end, truncated, length })
-            }
-            None => Err(Error::file(path, None, "empty", "the run was killed before it began")),
-        }
+        Ok(journal)
+    }
+
+    /// The input of a kind that a key names.
+    pub fn input(&self, key: &Key, kind: &str) -> Option<&Input> {
+        let hash = key.inputs.get(kind)?;
+        self.inputs.iter().find(|input| input.kind == kind && input.hash == *hash)
     }
 }

@@ -1,13 +1,12 @@
-//! Records of a run and everything that is made of them.
+//! What a run is: rows and their schema, the journal, statistics, and files derived from them.
 //!
-//! Measuring only writes records ([`record`], [`journal`]); the CSV files, the JSON and the tables are pure functions of
-//! a journal ([`summary`], [`table`]), so that they can be made again at any time, on any machine.
+//! Measuring only writes records ([`row`], [`run`], [`journal`]); CSV files, JSON and tables are pure functions of a
+//! journal, so that they can be made again at any time, on any machine.
 
 pub mod files;
 pub mod journal;
 pub mod picture;
-pub mod rays_csv;
-pub mod schema;
+pub mod row;
+pub mod run;
 pub mod statistics;
-pub mod summary;
-pub mod table;
+pub mod terminal;

@@ -5,7 +5,8 @@ use crate::record::files;
 use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
 use std::path::Path;
 
-/// Where a run's folder has the pictures of its scenes: `SCENE.png`, and `SCENE` + [`STEPS`] + `.png` with each pixel's steps.
+/// Where a run's folder has the pictures of its scenes: `SCENE.png`, and `SCENE` + [`STEPS`] + `.png` with each pixel's
+/// steps.
 pub const FOLDER: &str = "pictures";
 /// Behind the scene's name in the heat map's.
 pub const STEPS: &str = "-steps";
@@ -25,8 +26,8 @@ pub fn write_png(path: &Path, width: u32, height: u32, rgba: &[u8]) -> Result<()
 /// A colour for a value from 0 (nothing) to 1 (most): RGBA8.
 ///
 /// Lightness rises evenly in OKLab, so that the order of two values can be seen, also in print and by people who do not
-/// see all hues, while the hue turns from blue by way of red to yellow. Where a colour leaves sRGB, its chroma gives way, never its
-/// lightness.
+/// see all hues, while the hue turns from blue by way of red to yellow. Where a colour leaves sRGB, its chroma gives
+/// way, never its lightness.
 pub fn heat(value: f32) -> [u8; 4] {
     let value = if value.is_finite() { value.clamp(0.0, 1.0) } else { 1.0 };
     let lightness = 0.10 + 0.87 * value;
@@ -53,7 +54,7 @@ pub fn heat_map(values: &[u32], top: u32) -> Vec<u8> {
 }
 
 /// The value that one in two hundred exceeds: a few extreme pixels shall not darken all the others. 0 for no values.
-pub fn most_but_few(values: &[u32]) -> u32 {
+pub fn percentile_99_5(values: &[u32]) -> u32 {
     let mut sorted = values.to_vec();
     let place = values.len().saturating_sub(1) - values.len() / 200;
     match sorted.is_empty() {

@@ -1,5 +1,5 @@
-//! The catalogue: real scenes by name (`scenes/catalog.toml`, part of the program). Their files are not part of it; they
-//! are looked for in a folder that the caller names.
+//! The catalogue: published scenes by name. `scenes/catalog.toml` is embedded in the program; the scenes' files are
+//! not, they are searched in a folder that the caller names.
 
 use super::{Light, Placement, did_you_mean, procedural};
 use crate::error::{Error, Result};
@@ -13,41 +13,41 @@ use std::sync::OnceLock;
 
 const TEXT: &str = include_str!("../../scenes/catalog.toml");
 
-/// How a scene is looked at (SPEC section 8).
+/// The two classes of scenes that the thesis of 2009 measured with different cameras.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Class {
-    /// A single object: the camera or the light turns once around it.
+    /// A single object: the camera or the light orbits around it.
     Object,
-    /// A place: a camera path leads through it.
+    /// An environment: the camera moves through it on a path.
     Walk,
 }
 
-/// A place inside the folder of scenes where a scene may lie.
+/// A path inside the folder of scenes at which a scene's file is searched.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Candidate {
-    /// A file, or a folder that is one scene as a whole.
+pub struct FileLocation {
+    /// Path of a file, or of a folder with the files of one scene, relative to the folder of scenes.
     pub path: PathBuf,
-    /// SHA-256 of the file, hexadecimal, where it is known.
+    /// SHA-256 of the file, hexadecimal, if it is known.
     pub sha256: Option<String>,
 }
 
-/// Where a scene is officially to be had, as a `.tar.gz`.
+/// The official download of a scene, a `.tar.gz`.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Archive {
-    /// Its address.
+    /// Address of the archive.
     pub url: String,
-    /// SHA-256 of the archive, hexadecimal, where it is known.
+    /// SHA-256 of the archive, hexadecimal, if it is known.
     pub sha256: Option<String>,
-    /// The scene's file inside of it.
+    /// Path of the scene's file in the archive.
     pub member: PathBuf,
-    /// Where that file goes inside the folder of scenes: one of the entry's candidates.
+    /// Path of that file in the folder of scenes; it is one of [`Entry::file`].
     pub to: PathBuf,
 }
 
-/// A light of the catalogue's.
+/// A light that the catalogue adds to a scene.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct CatalogueLight {
@@ -59,37 +59,37 @@ struct CatalogueLight {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Entry {
-    /// As given to `--scene`, and as it stands in records.
+    /// The name that `--scene` accepts and that records contain.
     pub name: String,
-    /// One line for people.
+    /// Title for listings, one line.
     pub title: String,
-    /// True if the thesis measured it; the counts are then the published ones.
+    /// True if the thesis of 2009 measured it; the counts are then the published ones.
     #[serde(default)]
     pub published: bool,
-    /// How it is looked at.
+    /// Decides the default camera.
     pub class: Class,
-    /// Triangles that it has.
+    /// Expected number of triangles.
     pub triangles: usize,
-    /// Vertices that it has, where known.
+    /// Expected number of vertices, if known.
     pub vertices: Option<usize>,
-    /// Lights that it is measured with, where published.
+    /// Number of lights in the measurements of the thesis, if published.
     pub lights: Option<usize>,
-    /// Options of the structure `grid` that the thesis set by hand.
+    /// Options of the structure `grid` that the thesis set for this scene.
     pub grid: Option<String>,
-    /// How the file is to be read, as behind a file's name.
+    /// Reading options, as after a file's name: `key=value,...`.
     #[serde(default)]
     pub options: String,
-    /// The camera path in `camera-paths/` that was made for it.
+    /// Name of its camera path in `camera-paths/`.
     pub camera_path: Option<String>,
-    /// Where it comes from, in words.
+    /// Description of the source, with its address.
     pub source: String,
-    /// What the source says about its use, in our words.
+    /// Summary of the source's licence.
     pub licence: String,
-    /// Whom to name.
+    /// The authors to be credited.
     pub credit: String,
-    /// Where it may lie inside the folder of scenes.
-    pub file: Vec<Candidate>,
-    /// What `rtbench scenes fetch` downloads, where there is an official address.
+    /// Paths at which its file is searched, in this order.
+    pub file: Vec<FileLocation>,
+    /// The archive that `rtbench scenes fetch` downloads, if there is an official address.
     pub fetch: Option<Archive>,
     #[serde(default)]
     light: Vec<CatalogueLight>,
@@ -100,24 +100,24 @@ struct Catalogue {
     scene: Vec<Entry>,
 }
 
-/// All scenes of the catalogue: the thesis's, in its order, then others.
+/// All scenes of the catalogue: those of the thesis in its order, then the others.
 pub fn entries() -> &'static [Entry] {
     static ENTRIES: OnceLock<Vec<Entry>> = OnceLock::new();
     ENTRIES.get_or_init(|| {
-        let catalogue: Catalogue = toml::from_str(TEXT).expect("the embedded catalogue is sound: a test reads it");
+        let catalogue: Catalogue = toml::from_str(TEXT).expect("the embedded catalogue is valid: a test reads it");
         catalogue.scene
     })
 }
 
-/// The scene of that name.
+/// The entry of that name, if the catalogue has one.
 pub fn find(name: &str) -> Option<&'static Entry> {
     entries().iter().find(|entry| entry.name == name)
 }
 
-/// The scene of that name.
+/// The entry of that name.
 ///
 /// # Errors
-/// [`Error::Input`] if there is none.
+/// [`Error::Input`] if the catalogue has no entry of that name.
 pub fn get(name: &str) -> Result<&'static Entry> {
     find(name).ok_or_else(|| {
         let names: Vec<&str> = entries().iter().map(|entry| entry.name.as_str()).collect();
@@ -125,7 +125,7 @@ pub fn get(name: &str) -> Result<&'static Entry> {
     })
 }
 
-/// The first of a scene's candidates that exists in `folder`.
+/// The first of the entry's file locations that exists in `folder`.
 pub fn locate(entry: &Entry, folder: &Path) -> Option<PathBuf> {
     entry.file.iter().map(|candidate| folder.join(&candidate.path)).find(|path| path.exists())
 }
@@ -133,8 +133,8 @@ pub fn locate(entry: &Entry, folder: &Path) -> Option<PathBuf> {
 /// The SHA-256 of a file, hexadecimal.
 ///
 /// # Errors
-/// It cannot be read.
-pub fn sha256(path: &Path) -> std::io::Result<String> {
+/// The file cannot be read.
+pub(crate) fn sha256(path: &Path) -> std::io::Result<String> {
     let (mut file, mut hasher, mut buffer) = (File::open(path)?, Sha256::new(), vec![0; 1 << 18]);
     loop {
         match file.read(&mut buffer)? {
@@ -151,11 +151,12 @@ pub(super) fn all_names() -> Vec<&'static str> {
 }
 
 impl Entry {
-    /// The file or folder to load, or an error that says what is absent and where to get it.
+    /// The file or folder to load.
     ///
     /// # Errors
-    /// [`Error::Input`] if no folder is given, or none of the candidates is there.
-    pub fn path_in(&self, folder: Option<&Path>) -> Result<PathBuf> {
+    /// [`Error::Input`] if no folder is given, or no file of the entry exists in it. The hint tells where to get the
+    /// file.
+    pub(crate) fn path_in(&self, folder: Option<&Path>) -> Result<PathBuf> {
         let absent = |problem: String| Err(Error::argument(&self.name, problem, self.hint()));
         let Some(folder) = folder else {
             return absent("it is a scene of the catalogue, but no folder of scenes is given".into());
@@ -169,16 +170,16 @@ impl Entry {
         }
     }
 
-    /// The SHA-256 that the catalogue knows for the candidate at this path, if it does.
-    pub fn known_hash(&self, path: &Path) -> Option<&str> {
+    /// The SHA-256 that the catalogue has for the file at this path, if any.
+    pub(crate) fn known_hash(&self, path: &Path) -> Option<&str> {
         self.file.iter().find(|candidate| path.ends_with(&candidate.path))?.sha256.as_deref()
     }
 
-    /// The SHA-256 of the candidate at this path, if it is not the one that the catalogue knows.
+    /// The SHA-256 of the file at this path, if it differs from the one in the catalogue.
     ///
     /// # Errors
     /// [`Error::Input`] if the file cannot be read.
-    pub fn other_hash(&self, path: &Path) -> Result<Option<String>> {
+    pub(crate) fn other_hash(&self, path: &Path) -> Result<Option<String>> {
         let Some(known) = self.known_hash(path) else { return Ok(None) };
         let unreadable =
             |e| Error::file(path, None, format!("cannot be read: {e}"), "check the path and its permissions");
@@ -189,18 +190,18 @@ impl Entry {
         Ok((found != known).then_some(found))
     }
 
-    /// What to do about an absent scene.
-    pub fn hint(&self) -> String {
-        let place = format!("put it there as {}", self.file[0].path.display());
-        let folder = "--scenes-dir or RTBENCH_SCENES name the folder";
+    /// The hint for a scene of which the file is absent.
+    pub(crate) fn hint(&self) -> String {
+        let place = format!("put its file there as {}", self.file[0].path.display());
+        let folder = "--scenes-dir or RTBENCH_SCENES names the folder";
         match self.fetch {
-            Some(_) => format!("{folder}; `rtbench scenes fetch {}` gets it from {}", self.name, self.source),
+            Some(_) => format!("{folder}; `rtbench scenes fetch {}` downloads it from {}", self.name, self.source),
             None => format!("{folder}; {place}, from {}", self.source),
         }
     }
 
-    /// The lights that the catalogue gives to a file without any, for a scene that is placed so.
-    pub fn lights(&self, placement: &Placement) -> Vec<Light> {
+    /// The lights that the catalogue adds to a file without lights, in the coordinates of a scene with this placement.
+    pub(crate) fn lights(&self, placement: &Placement) -> Vec<Light> {
         let place = |position: [f32; 3]| placement.place(Vec3::from(position).as_dvec3());
         self.light.iter().map(|light| Light::new(place(light.position), Vec3::from(light.colour))).collect()
     }

@@ -1,39 +1,39 @@
-//! What one pass without branches tells about a mesh: enough to know that nothing is wrong with it. Files are sound almost
-//! always; which element is at fault is looked for only where one is.
+//! A branchless pass over a mesh that detects whether any index or coordinate is invalid. Almost all files are valid,
+//! so the invalid element is searched only after this pass has found that there is one.
 
 use super::{Scene, Triangle};
 use crate::math::{Aabb, Vertex};
 use glam::{UVec4, Vec4};
 
-/// The largest indices, and where the vertices lie.
+/// The largest indices and the bounds of a mesh.
 #[derive(Clone, Copy)]
 pub(super) struct Extent {
-    /// Of the three corners and of the material.
+    /// Largest index of each of the three corners, and of the material.
     indices: UVec4,
-    /// Zero, unless something is infinite or NaN.
+    /// Zero, unless a coordinate is infinite or NaN.
     zero: Vec4,
     min: Vec4,
     max: Vec4,
 }
 
 impl Extent {
-    /// Of nothing.
+    /// The extent of an empty mesh; it is neutral for [`Extent::union`].
     pub const EMPTY: Extent =
         Extent { indices: UVec4::ZERO, zero: Vec4::ZERO, min: Vec4::INFINITY, max: Vec4::NEG_INFINITY };
 
-    /// Of a whole scene.
+    /// The extent of a whole scene.
     pub fn of(scene: &Scene) -> Extent {
         let (a, b) = rayon::join(|| Extent::of_triangles(&scene.triangles), || Extent::of_vertices(&scene.vertices));
-        a.and(b)
+        a.union(b)
     }
 
-    /// Of triangles alone.
+    /// The largest indices; the bounds are empty.
     pub fn of_triangles(triangles: &[Triangle]) -> Extent {
         let rows: &[UVec4] = bytemuck::cast_slice(triangles);
         Extent { indices: rows.iter().fold(UVec4::ZERO, |most, &row| most.max(row)), ..Extent::EMPTY }
     }
 
-    /// Of vertices alone.
+    /// The bounds; the indices are zero.
     pub fn of_vertices(vertices: &[Vertex]) -> Extent {
         let rows: &[[Vec4; 2]] = bytemuck::cast_slice(vertices);
         rows.iter().fold(Extent::EMPTY, |so_far, &[position, normal]| Extent {
@@ -44,8 +44,7 @@ impl Extent {
         })
     }
 
-    /// Of both.
-    pub fn and(self, other: Extent) -> Extent {
+    pub fn union(self, other: Extent) -> Extent {
         Extent {
             indices: self.indices.max(other.indices),
             zero: self.zero + other.zero,

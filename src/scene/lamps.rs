@@ -1,30 +1,32 @@
-//! Surfaces that shine become point lights.
+//! Converts emissive surfaces to point lights.
 //!
-//! A lamp is a set of shining triangles that hang together. Its light stands at the middle of its area, a thousandth of
-//! the scene's diagonal before it on the side of its normals, and has the colour of its emission times its area. If there
-//! are more than [`MAX_LIGHTS`], neighbours are merged: the group of lamps that reaches farthest is halved, until there are
-//! as many groups. Our lights do not fade with distance, so that units mean nothing: all are scaled so that together
-//! their brightest channel is 1.
+//! A lamp is a connected set of emissive triangles. Its light lies at the centroid of its area, moved by a thousandth
+//! of the scene's diagonal along its normals; its colour is the emission times the area. If there are more than
+//! [`MAX_LIGHTS`] lamps, neighbours are merged: the group of lamps with the largest extent is split in halves until
+//! there are [`MAX_LIGHTS`] groups. Lights in this program have no attenuation, so absolute units have no meaning: all
+//! colours are scaled such that the brightest channel of their sum is 1.
 
 use super::{Light, Triangle};
 use crate::math::{Aabb, Vertex};
 use glam::{DVec3, Vec3};
 use std::collections::HashMap;
 
-/// Most lights that a file's lamps make: every one is a shadow ray per pixel.
+/// The largest number of lights that lamps are converted to; every light costs a shadow ray per pixel.
 pub const MAX_LIGHTS: usize = 4;
 
-/// Memory per triangle that shines, at most: its lamp twice, its corners' places, a tree's link and a pointer.
-pub const BYTES: usize = 2 * size_of::<Lamp>() + 3 * 42 + 2 * size_of::<usize>();
+/// Upper bound of the memory per emissive triangle, in bytes: its lamp twice, the entries of its corners in the map, a
+/// link of the union-find forest, and a pointer.
+pub(crate) const BYTES: usize = 2 * size_of::<Lamp>() + 3 * 42 + 2 * size_of::<usize>();
 
-/// A lamp, or several.
+/// The sums over one or several lamps.
 #[derive(Clone, Copy, Debug, Default)]
 struct Lamp {
-    /// Sum of the middles of triangles, weighted by area.
+    /// Sum of the triangles' centroids, weighted by area.
     middle: DVec3,
+    /// Sum of the triangles' unit normals, weighted by area.
     normal: DVec3,
     area: f64,
-    /// Emission times area.
+    /// Sum of emission times area.
     power: DVec3,
 }
 
@@ -41,8 +43,8 @@ impl Lamp {
     }
 }
 
-/// The lights of all triangles whose material has an emission.
-pub fn lights(vertices: &[Vertex], triangles: &[Triangle], emission: &[Vec3]) -> Vec<Light> {
+/// The lights of all triangles that have a material with an emission; `emission` is indexed by material.
+pub(crate) fn lights(vertices: &[Vertex], triangles: &[Triangle], emission: &[Vec3]) -> Vec<Light> {
     let lamps = lamps(vertices, triangles, emission);
     if lamps.is_empty() {
         return Vec::new();
@@ -57,7 +59,7 @@ pub fn lights(vertices: &[Vertex], triangles: &[Triangle], emission: &[Vec3]) ->
     groups.iter().map(light).filter(|l| l.position.is_finite() && l.colour.is_finite()).collect()
 }
 
-/// Shining triangles that share positions, in the order of their first triangle.
+/// The lamps: emissive triangles are connected if they share a position. They are in the order of their first triangle.
 fn lamps(vertices: &[Vertex], triangles: &[Triangle], emission: &[Vec3]) -> Vec<Lamp> {
     let shines = |t: &&Triangle| emission[t.material as usize].max_element() > 0.0;
     let shining: Vec<&Triangle> = triangles.iter().filter(shines).collect();
@@ -85,7 +87,7 @@ fn lamps(vertices: &[Vertex], triangles: &[Triangle], emission: &[Vec3]) -> Vec<
     lamps
 }
 
-/// The root of a tree of a union-find forest; halves the way to it.
+/// The root of `i` in a union-find forest; halves the path to it.
 fn root(parent: &mut [usize], mut i: usize) -> usize {
     while parent[i] != i {
         parent[i] = parent[parent[i]];
@@ -94,7 +96,7 @@ fn root(parent: &mut [usize], mut i: usize) -> usize {
     i
 }
 
-/// At most [`MAX_LIGHTS`] groups of lamps, each as one.
+/// Merges the lamps into at most [`MAX_LIGHTS`].
 fn merge(lamps: Vec<Lamp>) -> Vec<Lamp> {
     let mut groups = vec![lamps];
     while groups.len() < MAX_LIGHTS {

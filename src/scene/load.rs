@@ -1,9 +1,10 @@
-//! Loading by name: files by their extension, folders and lists of files as one scene, built-in scenes, the catalogue.
+//! Loads scenes by name: files by their extension, folders and lists of files as one scene, built-in scenes, and scenes
+//! of the catalogue.
 
 use super::extent::Extent;
 use super::options::settings as split;
 use super::{
-    FORMATS, Material, Options, Origin, Reader, Scene, Triangle, catalogue, did_you_mean, placement, procedural,
+    FORMATS, Material, Options, Origin, ReadScene, Scene, Triangle, catalogue, did_you_mean, placement, procedural,
     sources,
 };
 use crate::error::{Error, Result};
@@ -11,81 +12,78 @@ use glam::DVec3;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-/// Loads a scene that needs no folder of scenes: see [`load_in`].
+/// Loads a scene without a folder of scenes, see [`load_in`].
 ///
 /// # Errors
 /// Those of [`load_in`].
-pub fn load(what: &str) -> Result<Scene> {
-    load_in(what, None)
+pub fn load(spec: &str) -> Result<Scene> {
+    load_in(spec, None)
 }
 
-/// Loads a scene: a file by its extension, a folder or several files joined by `+` as one scene, a built-in scene, or a
-/// scene of the catalogue whose file lies in `folder`; each as `name[:key=value,...]` (see [`Options`] for the keys of
-/// files).
+/// Loads a scene: a file, a folder or several files joined by `+` as one scene, a built-in scene, or a scene of the
+/// catalogue with its file in `folder`. `spec` is `name[:key=value,...]`; see [`Options`] for the keys of files.
 ///
-/// A name of the catalogue or of a built-in scene means just that, even where a file or folder is called the same
-/// (write `./bunny` for the folder). Anything else is a file if there is one of that name, or if it has a path separator
-/// or a known extension.
+/// The name of a scene of the catalogue or of a built-in scene takes precedence over a file or folder of the same name
+/// (`./bunny` names the folder). Any other name is a file if such a file exists, or if the name has a path separator or
+/// a known extension.
 ///
 /// # Errors
-/// [`Error::Input`] for whatever is wrong with the name, the parameters or the file.
-pub fn load_in(what: &str, folder: Option<&Path>) -> Result<Scene> {
-    let (name, settings) = split_settings(what);
+/// [`Error::Input`] if the name, an option or the file is not valid.
+pub fn load_in(spec: &str, folder: Option<&Path>) -> Result<Scene> {
+    let (name, settings) = split_settings(spec);
     if let Some(entry) = catalogue::find(name) {
-        return load_entry(what, entry, settings, folder);
+        return load_entry(spec, entry, settings, folder);
     }
     let path = Path::new(name);
-    let bare = what.split(':').next().unwrap_or(what);
-    let built_in = is_built_in(what);
+    let built_in = is_built_in(spec);
     if !built_in && (reader_of(path).is_some() || name.contains(['/', std::path::MAIN_SEPARATOR]) || path.exists()) {
-        let options = Options::parse(what, settings)?;
-        let mut scene = read(what, name, settings, &options)?;
+        let options = Options::parse(spec, settings)?;
+        let mut scene = read(spec, name, settings, &options)?;
         scene.name = with_suffix(&scene.name, &options.suffix(&Options::default()));
         return finish(scene, name, &options);
     }
     if !built_in {
-        let hint = format!("{}; or name a file such as mesh.ply", did_you_mean(bare, &catalogue::all_names()));
-        return Err(Error::argument(what, format!("no file and no scene is called `{bare}`"), hint));
+        return Err(unknown(spec));
     }
-    let mut scene = procedural::build(what)?;
+    let mut scene = procedural::build(spec)?;
     let extent = Extent::of(&scene);
-    scene.complete(extent).map_err(|(problem, hint)| Error::argument(what, problem, hint))?;
+    scene.complete(extent).map_err(|(problem, hint)| Error::argument(spec, problem, hint))?;
     scene.survey();
     Ok(scene)
 }
 
 /// True for the name of a built-in scene, with parameters or without.
-fn is_built_in(what: &str) -> bool {
+pub(super) fn is_built_in(what: &str) -> bool {
     let bare = what.split(':').next().unwrap_or(what);
     procedural::list().iter().any(|info| info.name == bare)
 }
 
-/// The same scene with its moving geometry frozen at a time: `time=...` among the options behind its name. What cannot
-/// move ([`has_no_time`]), and a scene for which a time is given already, stay as they are.
-pub fn at_time(what: &str, time: f64) -> String {
-    let (name, settings) = split_settings(what);
-    if has_no_time(what) || settings.split(',').any(|setting| setting.starts_with("time=")) {
-        return what.to_owned();
+/// Adds the option `time=...`, at which animated geometry is evaluated, to a scene's name. A scene without animation
+/// ([`has_no_time`]) and a scene that already has a time are returned unchanged.
+pub fn at_time(spec: &str, time: f64) -> String {
+    let (name, settings) = split_settings(spec);
+    if has_no_time(spec) || settings.split(',').any(|setting| setting.starts_with("time=")) {
+        return spec.to_owned();
     }
     let comma = if settings.is_empty() { "" } else { "," };
     format!("{name}:{settings}{comma}time={time}")
 }
 
-/// True for built-in scenes, and for scenes of the catalogue whose format knows no time.
-pub fn has_no_time(what: &str) -> bool {
+/// True for built-in scenes, and for scenes of the catalogue in a format without animation.
+pub fn has_no_time(spec: &str) -> bool {
     let timed =
         |path: &Path| format_of(path).is_some_and(|(_, _, supported_options)| supported_options.contains(&"time"));
-    let entry = catalogue::find(split_settings(what).0);
-    is_built_in(what) || entry.is_some_and(|entry| !entry.file.iter().any(|candidate| timed(&candidate.path)))
+    let entry = catalogue::find(split_settings(spec).0);
+    is_built_in(spec) || entry.is_some_and(|entry| !entry.file.iter().any(|candidate| timed(&candidate.path)))
 }
 
-/// A scene of the catalogue: the file as its entry says, and what the user sets on top.
-fn load_entry(what: &str, entry: &catalogue::Entry, settings: &str, folder: Option<&Path>) -> Result<Scene> {
+/// Loads a scene of the catalogue with the options of its entry; the user's settings override them.
+fn load_entry(spec: &str, entry: &catalogue::Entry, settings: &str, folder: Option<&Path>) -> Result<Scene> {
     let path = entry.path_in(folder)?;
-    let base = Options::parse(what, &entry.options)?;
-    let options = Options::parse(what, &format!("{},{settings}", entry.options))?;
+    let base = Options::parse(spec, &entry.options)?;
+    let options = Options::parse(spec, &format!("{},{settings}", entry.options))?;
     let name = path.to_string_lossy();
-    let mut scene = read(what, &name, settings, &options)?;
+    let mut scene = read(spec, &name, settings, &options)?;
     scene.name = format!("{}{}", entry.name, options.suffix(&base));
     let mut scene = finish(scene, &name, &options)?;
     if let Some(found) = entry.other_hash(&path)? {
@@ -103,17 +101,17 @@ fn load_entry(what: &str, entry: &catalogue::Entry, settings: &str, folder: Opti
     Ok(scene)
 }
 
-/// What every scene from a file goes through.
+/// Applies the options to a scene that was read from a file, checks it, and scales it to a comfortable extent.
 fn finish(mut scene: Scene, place: &str, options: &Options) -> Result<Scene> {
     let path = Path::new(place);
-    // A cache holds what has been through this; its reader has checked it again.
+    // A cache holds a finished scene, which its reader has checked.
     if is_cache(path) && *options == Options::default() {
         return Ok(scene);
     }
     scene.transform(options.up, options.scale);
     match (options.fov, &mut scene.camera) {
         (Some(fov), Some(camera)) => camera.field_of_view = fov,
-        (Some(_), None) => scene.warnings.push("fov: there is no camera in the file that it could change".into()),
+        (Some(_), None) => scene.warnings.push("fov: the option has no effect, because the file has no camera".into()),
         (None, _) => {}
     }
     let extent = Extent::of(&scene);
@@ -122,21 +120,22 @@ fn finish(mut scene: Scene, place: &str, options: &Options) -> Result<Scene> {
     let bounds = scene.survey();
     scene.size_fault(bounds).map_or(Ok(()), |found| Err(fault(found)))?;
     scene.normalise(bounds);
-    // What is scaled may have left the range of floats
+    // Scaling can move a light out of the range of floats.
     if let Some(i) = scene.lights.iter().position(|light| !light.position.is_finite()) {
-        return Err(fault((format!("light {i} is too far away for so small a scene"), "bring it nearer")));
+        return Err(fault((format!("light {i} is too far away in relation to the scene's extent"), "move it nearer")));
     }
     Ok(scene)
 }
 
-/// Most readings of a scene: a second one where it is far from the origin, further ones where its extent was lost in
-/// the rounding of the first.
+/// The largest number of readings of a scene: a second time if it is far from the origin, and further times if its
+/// extent was lost in the rounding of the first reading.
 const READINGS: usize = 5;
 
-/// Reads one file, a folder, or files joined by `+`, and names the scene after them (without options).
-fn read(what: &str, name: &str, settings: &str, options: &Options) -> Result<Scene> {
+/// Reads one file, a folder, or files joined by `+`. The scene's name is derived from the files' names, without
+/// options.
+fn read(spec: &str, name: &str, settings: &str, options: &Options) -> Result<Scene> {
     let files = parts(name)?;
-    check_settings(what, settings, &files)?;
+    check_settings(spec, settings, &files)?;
     let whole = Path::new(name);
     let folder = files.first() != Some(&whole.to_owned()) && whole.is_dir();
     if folder {
@@ -146,7 +145,7 @@ fn read(what: &str, name: &str, settings: &str, options: &Options) -> Result<Sce
     let mut readings = 1;
     let (scenes, moved) = loop {
         let scenes = if folder { read_folder(&files, &options)? } else { read_list(&files, &options)? };
-        // A cache alone has its place already, also where that is far away
+        // A single cache keeps the placement that it was written with.
         let fixed = options.origin != Origin::Auto || files.len() == 1 && is_cache(&files[0]);
         let parts = scenes.iter().map(|(_, scene)| scene);
         match if fixed { None } else { placement::better_offset(parts) } {
@@ -156,7 +155,7 @@ fn read(what: &str, name: &str, settings: &str, options: &Options) -> Result<Sce
     };
     let names: Vec<String> = scenes.iter().map(|(file, scene)| own_name(file, scene)).collect();
     let taken: Vec<&str> = scenes.iter().filter_map(|(file, _)| file.file_name()?.to_str()).collect();
-    let taken = (folder && 1 < taken.len()).then(|| format!("made of {}", taken.join(", ")));
+    let taken = (folder && 1 < taken.len()).then(|| format!("consists of {}", taken.join(", ")));
     let mut scenes = scenes.into_iter().map(|(_, scene)| scene);
     let Some(mut scene) = scenes.next() else {
         let hint = format!("known extensions: {}", extensions());
@@ -169,14 +168,14 @@ fn read(what: &str, name: &str, settings: &str, options: &Options) -> Result<Sce
     Ok(scene)
 }
 
-/// What the user should know of where the scene was put.
+/// A warning about the scene's placement in memory, if there is a reason for one.
 fn placement_warning(scene: &Scene, options: &Options, moved: bool) -> Option<String> {
     let offset = scene.placement.offset;
     if moved && offset != DVec3::ZERO {
         let point = offset.to_array().map(placement::number).join(",");
         return Some(format!(
-            "coordinates of more than {} times the extent: {point} is the origin while the scene is in memory \
-            (origin=keep leaves it)",
+            "the coordinates exceed {} times the extent: {point} is the origin while the scene is in memory \
+            (origin=keep prevents this)",
             placement::FAR
         ));
     }
@@ -184,12 +183,13 @@ fn placement_warning(scene: &Scene, options: &Options, moved: bool) -> Option<St
         return None;
     }
     let distance = placement::distance(placement::used_bounds(scene));
-    (distance > placement::FAR)
-        .then(|| format!("the origin that was given is {distance:.0} times the extent away: choose one in the scene"))
+    (distance > placement::FAR).then(|| {
+        format!("the option origin= is {distance:.0} times the extent away from the scene: choose a point in it")
+    })
 }
 
-/// Refuses options that none of the files' formats heeds.
-fn check_settings(what: &str, settings: &str, files: &[PathBuf]) -> Result<()> {
+/// Refuses options that none of the files' formats supports.
+fn check_settings(spec: &str, settings: &str, files: &[PathBuf]) -> Result<()> {
     let formats: Vec<_> = files.iter().filter_map(|file| format_of(file)).collect();
     let [(extension, ..), ..] = formats.as_slice() else { return Ok(()) };
     let mut supported_options = Options::COMMON.to_vec();
@@ -202,9 +202,34 @@ fn check_settings(what: &str, settings: &str, files: &[PathBuf]) -> Result<()> {
             let cache =
                 if *extension == super::cache::EXTENSION { ": give it to `rtbench scenes convert`" } else { "" };
             let problem = format!("a .{extension} file has no option `{key}`{cache}");
-            Err(Error::argument(what, problem, format!("its options are {}", supported_options.join(", "))))
+            Err(Error::argument(spec, problem, format!("its options are {}", supported_options.join(", "))))
         }
     }
+}
+
+/// Refuses what a reading of files would refuse before it opens one; see [`super::probe`].
+pub(super) fn check_file(what: &str, name: &str, settings: &str) -> Result<()> {
+    let path = Path::new(name);
+    if !(reader_of(path).is_some() || name.contains(['/', std::path::MAIN_SEPARATOR]) || path.exists()) {
+        return Err(unknown(what));
+    }
+    Options::parse(what, settings)?;
+    let files = parts(name)?;
+    check_settings(what, settings, &files)?;
+    for file in &files {
+        match reader_of(file) {
+            Some(_) => super::regular_file(file).map(drop)?,
+            // It says what is wrong, and reads nothing
+            None => read_one(file, &Options::default()).map(drop)?,
+        }
+    }
+    Ok(())
+}
+
+fn unknown(what: &str) -> Error {
+    let bare = what.split(':').next().unwrap_or(what);
+    let hint = format!("{}; or name a file such as mesh.ply", did_you_mean(bare, &catalogue::all_names()));
+    Error::argument(what, format!("no file and no scene is called `{bare}`"), hint)
 }
 
 fn read_list(files: &[PathBuf], options: &Options) -> Result<Vec<(PathBuf, Scene)>> {
@@ -212,12 +237,11 @@ fn read_list(files: &[PathBuf], options: &Options) -> Result<Vec<(PathBuf, Scene
     files.iter().map(scene).collect()
 }
 
-/// Reads all files of a folder but those that another of them includes: these are in the scene already, where and as often
-/// as that file wants them.
+/// Reads all files of a folder, except files that another one of them includes: those are already part of the scene.
 fn read_folder(files: &[PathBuf], options: &Options) -> Result<Vec<(PathBuf, Scene)>> {
-    let read = |file: &PathBuf| (sources::whole(file), sources::record(false, || read_one(file, options)));
+    let read = |file: &PathBuf| (sources::resolve_folder(file), sources::record(false, || read_one(file, options)));
     let read: Vec<_> = files.iter().map(read).collect();
-    // A file that is broken speaks for itself alone: of two that include each other, none is left out.
+    // A file with an error excludes no other file, so that the errors of files that include each other are reported.
     let sound = read.iter().filter(|(_, (scene, _))| scene.is_ok());
     let included: HashSet<PathBuf> = sound
         .flat_map(|(file, (_, sources))| sources.iter().map(|source| &source.path).filter(move |path| *path != file))
@@ -233,23 +257,23 @@ fn read_folder(files: &[PathBuf], options: &Options) -> Result<Vec<(PathBuf, Sce
         }
     }
     if shared && let Some((_, scene)) = scenes.first_mut() {
-        let warning = "several files of the folder include the same ones: if they are versions of one scene, name one";
+        let warning = "several files of the folder include the same file: if they are versions of one scene, name one";
         scene.warnings.push(warning.into());
     }
     Ok(scenes)
 }
 
-/// The files that make one scene, in the order of their names for a folder, as given for a list.
+/// The files of one scene: sorted by name for a folder, in the given order for a list.
 fn parts(name: &str) -> Result<Vec<PathBuf>> {
     let path = Path::new(name);
     if !path.exists() && name.contains('+') {
         return Ok(name.split('+').map(PathBuf::from).collect());
     }
-    // A folder called like a file is told so by the reader.
+    // The reader refuses a folder with the extension of a file.
     if path.is_dir() && reader_of(path).is_none() { files_of_folder(path) } else { Ok(vec![path.to_owned()]) }
 }
 
-/// The files of a folder that make a scene, in the order of their names. A cache of the folder's own scene may lie in it.
+/// The scene files in a folder, sorted by name. Caches are excluded, so that a cache of the folder can lie in it.
 pub(super) fn files_of_folder(path: &Path) -> Result<Vec<PathBuf>> {
     let fault = |e: std::io::Error| Error::file(path, None, format!("cannot be read: {e}"), "check its permissions");
     let mut files = Vec::new();
@@ -270,8 +294,8 @@ fn read_one(path: &Path, options: &Options) -> Result<Scene> {
     let known = || format!("known extensions: {}", extensions());
     let (problem, hint) = match (path.exists(), path.is_dir()) {
         (false, _) => ("no such file", "check the path".to_owned()),
-        (_, true) => ("it is a folder, and a list is one of files", "name its files, or the folder alone".to_owned()),
-        _ => ("the format is unknown: formats are told by the file's extension", known()),
+        (_, true) => ("it is a folder, but a list consists of files", "name its files, or the folder alone".to_owned()),
+        _ => ("the format is unknown: the file's extension decides it", known()),
     };
     Err(Error::file(path, None, problem, hint))
 }
@@ -284,20 +308,20 @@ fn is_cache(path: &Path) -> bool {
     path.is_file() && path.extension().is_some_and(|e| e.eq_ignore_ascii_case(super::cache::EXTENSION))
 }
 
-/// The line of a file's format in [`FORMATS`].
-fn format_of(path: &Path) -> Option<&'static (&'static str, Reader, &'static [&'static str])> {
+/// The entry of a file's format in [`FORMATS`].
+fn format_of(path: &Path) -> Option<&'static (&'static str, ReadScene, &'static [&'static str])> {
     let extension = path.extension()?.to_str()?.to_ascii_lowercase();
     FORMATS.iter().find(|(known, ..)| *known == extension)
 }
 
-fn reader_of(path: &Path) -> Option<Reader> {
+fn reader_of(path: &Path) -> Option<ReadScene> {
     format_of(path).map(|(_, reader, _)| *reader)
 }
 
-/// Puts a scene behind another with the same placement; the first camera and background stay.
+/// Appends a scene to another one with the same placement. The camera and background of the first one have precedence.
 fn append(scene: &mut Scene, mut other: Scene) {
     for part in [&mut *scene, &mut other] {
-        // A part without materials gets the neutral one, as it would alone.
+        // A scene without materials gets the neutral one, as it would if it were loaded alone.
         if part.materials.is_empty() {
             part.materials.push(Material::neutral());
         }
@@ -318,7 +342,7 @@ fn append(scene: &mut Scene, mut other: Scene) {
     scene.camera = scene.camera.take().or(other.camera);
 }
 
-/// What a file's scene is called: as it says itself (a cache does), or like the file.
+/// The name of a scene from a file: the name in the file, which only caches have, otherwise the file's stem.
 fn own_name(file: &Path, scene: &Scene) -> String {
     match file.file_stem() {
         _ if !scene.name.is_empty() => scene.name.clone(),
@@ -327,13 +351,13 @@ fn own_name(file: &Path, scene: &Scene) -> String {
     }
 }
 
-/// What a folder's scene is called, `.` being as good as its name.
+/// The name of a scene from a folder; `.` is resolved to the folder's name.
 fn folder_name(folder: &Path) -> String {
     let whole = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     folder.file_name().or(whole.file_name()).map_or("scene".into(), |name| name.to_string_lossy().into_owned())
 }
 
-/// A name and more options behind it; that of a cache may have some already.
+/// A name with a suffix of options; the name in a cache may already have options.
 fn with_suffix(name: &str, suffix: &str) -> String {
     match suffix.strip_prefix(':') {
         Some(more) if name.contains(':') => format!("{name},{more}"),
@@ -342,7 +366,7 @@ fn with_suffix(name: &str, suffix: &str) -> String {
 }
 
 /// Name or path, and what follows its last colon if that is `key=value,...`; a file may have a colon in its name.
-fn split_settings(what: &str) -> (&str, &str) {
+pub(super) fn split_settings(what: &str) -> (&str, &str) {
     match what.rsplit_once(':') {
         Some((name, settings)) if settings.contains('=') && !Path::new(what).exists() => (name, settings),
         _ => (what, ""),

@@ -1,28 +1,30 @@
-//! The scene: one indexed triangle mesh, materials, point lights (SPEC section 1).
+//! The scene: one indexed triangle mesh, materials, and point lights.
 //!
-//! [`Scene`] is the only thing that the rest of the crate sees of a file. [`load_in`] finds a reader by extension, or a
-//! procedural scene or one of the catalogue by name; adding a format is one file and one line in [`FORMATS`].
+//! [`Scene`] is the result of all readers; no other part of the crate depends on a file format. [`load_in`] finds a
+//! reader by the file's extension, or a built-in scene or a scene of the catalogue by its name. A new format needs a
+//! module and a line in [`FORMATS`].
 
-pub mod aff;
+mod aff;
 pub mod cache;
 pub mod catalogue;
 mod extent;
 pub mod gltf;
-pub mod inventor;
+mod inventor;
 pub mod lamps;
 mod load;
-pub mod mesh_builder;
-pub mod mgf;
-pub mod normals;
+mod mesh_builder;
+mod mgf;
+mod normals;
 pub mod obj;
 mod options;
 pub mod placement;
 pub mod ply;
 pub mod polygon;
+mod probe;
 pub mod procedural;
 mod sources;
 mod suggest;
-pub mod text;
+mod text;
 
 use crate::error::{Error, Result};
 use crate::math::{Aabb, Vertex};
@@ -32,26 +34,26 @@ use glam::{DVec3, Vec3, Vec3A};
 pub use load::{at_time, has_no_time, load, load_in};
 pub use options::{MAX_SEGMENTS, Options, Origin, Up};
 pub use placement::Placement;
+pub use probe::probe;
 pub use procedural::{Parameter, SceneInfo, list};
 use rayon::prelude::*;
 use std::path::Path;
 pub(crate) use suggest::did_you_mean;
 
-/// Most vertices, and most triangles, that a scene may have (2^27): indices, node links and byte sizes then fit into 32
-/// bits everywhere.
+/// The largest number of vertices, and of triangles, of a scene: 2^27. Indices, node links and sizes in bytes then fit
+/// into 32 bits.
 pub const MAX_ELEMENTS: usize = 1 << 27;
 
-/// A reader: the scene in a file. From every position it subtracts [`Options::offset`] in double precision before it
-/// rounds, and says so in `placement`. It need not set `name`, nor `materials` if the format has none, nor count
-/// degenerate triangles; [`load`] does.
-pub type Reader = fn(&Path, &Options) -> Result<Scene>;
+/// A reader of a file format. It subtracts [`Options::offset`] from every position in double precision before it rounds
+/// to single precision, and stores the offset in [`Scene::placement`]. [`load`] sets the name, adds a material if there
+/// is none, and counts degenerate triangles.
+pub type ReadScene = fn(&Path, &Options) -> Result<Scene>;
 
-/// What BART's files heed.
+/// The options that the reader of BART's files supports.
 const AFF: &[&str] = &["time", "segments", "cones", "camera", "outside", "origin"];
 
-/// Readers by file extension (lower case), and which options they heed beside those that every file takes
-/// ([`Options::COMMON`]).
-pub const FORMATS: &[(&str, Reader, &[&str])] = &[
+/// Readers by file extension (lower case), with the options that each supports in addition to [`Options::COMMON`].
+pub const FORMATS: &[(&str, ReadScene, &[&str])] = &[
     ("ply", ply::read, &["origin"]),
     ("aff", aff::read, AFF),
     ("nff", aff::read, AFF),
@@ -61,11 +63,11 @@ pub const FORMATS: &[(&str, Reader, &[&str])] = &[
     ("obj", obj::read, &["lamp", "outside", "origin"]),
     ("gltf", gltf::read, &["camera", "outside", "origin"]),
     ("glb", gltf::read, &["camera", "outside", "origin"]),
-    // The cache of any of them
+    // A cache of a scene in any of these formats
     (cache::EXTENSION, cache::read, &[]),
 ];
 
-/// One triangle: three vertices and a material.
+/// A triangle: three indices of vertices and an index of a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Triangle {
@@ -75,110 +77,110 @@ pub struct Triangle {
     pub material: u32,
 }
 
-/// A Phong material, as the device sees it (48 bytes).
+/// A Phong material as it is stored on the device: 48 bytes. Colours are linear, 0 or more per channel.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C, align(16))]
 pub struct Material {
-    /// Ambient colour, linear, 0 to 1.
+    /// Colour that is reflected of the ambient light.
     pub ambient: Vec3,
-    /// Share of the reflected ray's colour, 0 to 1; more than 0 makes the surface shiny (PSR follows it).
+    /// Share of the reflected ray's colour, 0 to 1; a surface with more than 0 is a mirror.
     pub reflectivity: f32,
-    /// Diffuse colour.
+    /// Colour of Lambert's diffuse reflection.
     pub diffuse: Vec3,
-    /// Phong exponent.
+    /// Exponent of Phong's highlight, 0 or more.
     pub exponent: f32,
-    /// Specular colour.
+    /// Colour of Phong's highlight.
     pub specular: Vec3,
-    /// Zero; WGSL's vec4.
+    /// Padding of WGSL's vec4; always zero.
     pub pad: f32,
 }
 
 impl Material {
-    /// A matt material of one colour, with a little ambient light.
+    /// A diffuse material of one colour; its ambient colour is a tenth of it.
     pub fn matt(diffuse: Vec3) -> Material {
         Material { ambient: diffuse * 0.1, reflectivity: 0.0, diffuse, exponent: 1.0, specular: Vec3::ZERO, pad: 0.0 }
     }
 
-    /// What a scene without materials of its own is made of: a light warm grey with a soft highlight, no mirror.
+    /// The material of scenes that define none: a light warm grey with a soft highlight, without a mirror.
     pub fn neutral() -> Material {
         Material::matt(Vec3::new(0.72, 0.70, 0.66)).shiny(Vec3::splat(0.25), 24.0, 0.0)
     }
 
-    /// With a highlight and a mirror's share.
+    /// This material with a highlight and a mirror share.
     pub fn shiny(self, specular: Vec3, exponent: f32, reflectivity: f32) -> Material {
         Material { specular, exponent, reflectivity, ..self }
     }
 }
 
-/// A point light, without attenuation, as the device sees it (32 bytes).
+/// A point light without attenuation as it is stored on the device: 32 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C, align(16))]
 pub struct Light {
-    /// Where it is.
+    /// Position in the scene's coordinates in memory.
     pub position: Vec3,
-    /// Zero; WGSL's vec4.
+    /// Padding of WGSL's vec4; always zero.
     pub pad0: f32,
-    /// Linear colour; several lights add up.
+    /// Linear colour; the contributions of several lights are added.
     pub colour: Vec3,
-    /// Zero; WGSL's vec4.
+    /// Padding of WGSL's vec4; always zero.
     pub pad1: f32,
 }
 
 impl Light {
-    /// A light.
+    /// A light with zero padding.
     pub fn new(position: Vec3, colour: Vec3) -> Light {
         Light { position, pad0: 0.0, colour, pad1: 0.0 }
     }
 }
 
-/// A camera that stands in a scene file, still or moving.
+/// The camera of a scene file, static or animated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneCamera {
     /// Vertical field of view in degrees, between 0 and 180.
     pub field_of_view: f32,
-    /// One per frame of the file's animation; a single one for a camera that stands still.
+    /// One pose per frame of the file's animation; a static camera has a single pose.
     pub frames: Vec<Pose>,
 }
 
-/// Where a camera is at a moment.
+/// The pose of a camera at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// In the file's time.
+    /// Time in the units of the file's animation.
     pub time: f64,
-    /// Eye.
+    /// The centre of projection.
     pub position: Vec3,
-    /// Unit vector to the image's middle.
+    /// Unit vector to the centre of the image.
     pub direction: Vec3,
-    /// Roughly up; not parallel to `direction`.
+    /// The up vector; need not be perpendicular to `direction`, but must not be parallel to it.
     pub up: Vec3,
 }
 
-/// A scene as loaded, in the coordinates of memory. Invariants, kept by every reader (see [`Scene::check`]): at least
-/// one triangle, all indices in range, all positions and normals finite, at least one material.
+/// A loaded scene, in its coordinates in memory. Every reader guarantees these invariants (see [`Scene::check`]): there
+/// is at least one triangle and one material, all indices are in range, all positions and normals are finite.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
-    /// Short name: the file's stem or the procedural scene's name and parameters. Stands in every record.
+    /// Short name, contained in every record: the file's stem and options, or the name and parameters of a built-in
+    /// scene.
     pub name: String,
-    /// Positions and normals.
+    /// The vertices of all triangles; a vertex may be unused.
     pub vertices: Vec<Vertex>,
-    /// Triangles in file order; polygons as fans. Their index is what a hit reports.
+    /// The triangles in file order. A hit reports the index of its triangle.
     pub triangles: Vec<Triangle>,
-    /// Materials.
+    /// The materials that triangles refer to; never empty.
     pub materials: Vec<Material>,
-    /// Point lights; empty where the file has none (a camera path brings its own then).
+    /// Point lights; empty if the file has none, in which case the camera path provides them.
     pub lights: Vec<Light>,
-    /// Colour where a ray leaves the scene.
+    /// Colour of rays that leave the scene.
     pub background: Vec3,
-    /// The file name (without extension) of the camera path in `camera-paths/` that fits, if the scene knows one.
+    /// Name of the scene's camera path in `camera-paths/` (without extension), if it has one.
     pub camera_path: Option<String>,
-    /// The camera that the file brings, if it does; it goes before `camera_path`.
+    /// The camera of the scene's file, if it has one; it has precedence over `camera_path`.
     pub camera: Option<SceneCamera>,
-    /// Triangles without area: kept, counted, never hit.
+    /// Number of triangles without area. They are kept, but never hit.
     pub degenerate_triangles: usize,
-    /// What the reader wants the user to know, one line each.
+    /// Warnings of the reader for the user, one line each.
     pub warnings: Vec<String>,
-    /// Where all of this lies in the file: positions here are single precision near the origin, and users see the
-    /// file's.
+    /// Conversion between the coordinates in memory and those of the scene's file, which users see.
     pub placement: Placement,
 }
 
@@ -193,23 +195,23 @@ impl Scene {
         Aabb::from_points(self.triangles.iter().flat_map(|t| t.vertices).map(|v| self.vertices[v as usize].position))
     }
 
-    /// Checks the invariants that everything behind the readers relies on.
+    /// Checks the invariants of a scene.
     ///
     /// # Errors
-    /// [`Error::Input`] that names the scene and the first invariant that does not hold.
+    /// [`Error::Input`] with the scene's name and the first violated invariant.
     pub fn check(&self) -> Result<()> {
         self.first_fault(Extent::of(self))
             .map_or(Ok(()), |(problem, hint)| Err(Error::argument(self.name.clone(), problem, hint)))
     }
 
-    /// The first invariant that does not hold: problem and mend. `extent` is this scene's.
+    /// The first violated invariant, as problem and hint. `extent` is the extent of this scene.
     fn first_fault(&self, extent: Extent) -> Option<(String, &'static str)> {
         if self.triangles.is_empty() {
             return Some(("there is no triangle".into(), "a scene needs at least one"));
         }
-        for (count, what) in [(self.vertices.len(), "vertices"), (self.triangles.len(), "triangles")] {
+        for (count, elements) in [(self.vertices.len(), "vertices"), (self.triangles.len(), "triangles")] {
             if count > MAX_ELEMENTS {
-                let problem = format!("{count} {what} are more than rtbench handles ({MAX_ELEMENTS})");
+                let problem = format!("{count} {elements} are more than rtbench supports ({MAX_ELEMENTS})");
                 return Some((problem, "simplify the scene"));
             }
         }
@@ -217,13 +219,13 @@ impl Scene {
         if extent.vertex() >= vertices
             && let Some(i) = self.triangles.iter().position(|t| t.vertices.iter().any(|&v| v >= vertices))
         {
-            let problem = format!("triangle {i} uses a vertex beyond the {vertices} that there are");
+            let problem = format!("triangle {i} uses a vertex beyond the {vertices} of the scene");
             return Some((problem, "repair the triangle's indices"));
         }
         if extent.material() >= materials
             && let Some(i) = self.triangles.iter().position(|t| t.material >= materials)
         {
-            let problem = format!("triangle {i} uses a material beyond the {materials} that there are");
+            let problem = format!("triangle {i} uses a material beyond the {materials} of the scene");
             return Some((problem, "repair the triangle's material"));
         }
         if !extent.is_finite()
@@ -231,7 +233,7 @@ impl Scene {
         {
             return Some((format!("vertex {i} is not finite"), "remove it or repair the export"));
         }
-        // Vertices that no triangle uses may lie anywhere: only then it takes the way by the triangles.
+        // Unused vertices may lie anywhere: if the bounds of all vertices are too large, those of the triangles decide.
         if !extent.bounds().diagonal().is_finite() && !self.bounds().diagonal().is_finite() {
             return Some(("the scene is too large: its diagonal is not finite".into(), "scale it down"));
         }
@@ -252,16 +254,16 @@ impl Scene {
         None
     }
 
-    /// Bytes of vertices, materials, every triangle's material and lights, as the twins hold them. (Triangle records belong to
-    /// structures.)
+    /// Size in bytes of vertices, materials, material indices and lights on the device. Triangle references belong to
+    /// the structures.
     pub fn geometry_bytes(&self) -> u64 {
         let materials = size_of_val(self.materials.as_slice()) + self.triangles.len() * size_of::<u32>();
         (size_of_val(self.vertices.as_slice()) + materials + size_of_val(self.lights.as_slice())) as u64
     }
 
-    /// BLAKE3 of all that decides what is traced and shaded, hexadecimal: vertices, triangles, materials, lights and
-    /// background, each with its number, and the placement where there is one. Equal on all machines with the same
-    /// byte order.
+    /// BLAKE3, hexadecimal, of all data that tracing and shading depend on: vertices, triangles, materials, lights and
+    /// background, each with its length, and the placement unless it is the identity. The hash is equal on all machines
+    /// with the same byte order.
     pub fn content_hash(&self) -> String {
         let background = [self.background];
         let parts: [&[u8]; 5] = [
@@ -276,7 +278,7 @@ impl Scene {
             hasher.update(&(part.len() as u64).to_le_bytes());
             hasher.update(part);
         }
-        // Cameras and rays are given in the file's coordinates: the same scene elsewhere is another one.
+        // Cameras and rays are given in the file's coordinates: with another placement they meet the scene elsewhere.
         if !self.placement.is_identity() {
             let Placement { offset, exponent } = self.placement;
             offset.to_array().iter().for_each(|x| _ = hasher.update(&x.to_le_bytes()));
@@ -285,7 +287,7 @@ impl Scene {
         hasher.finalize().to_hex().to_string()
     }
 
-    /// The share of the surface's area that is a mirror (reflectivity above 0), 0 to 1.
+    /// The share of the surface area with a reflectivity above 0, from 0 to 1.
     pub fn mirror_share(&self) -> f32 {
         let (mut mirrors, mut all) = (0.0f64, 0.0f64);
         for triangle in &self.triangles {
@@ -299,7 +301,7 @@ impl Scene {
         if all > 0.0 { (mirrors / all) as f32 } else { 0.0 }
     }
 
-    /// Turns the scene's up to y and scales it, positions, lights and camera alike.
+    /// Rotates the scene such that y is up, and scales it; lights, camera and placement included.
     fn transform(&mut self, up: Up, scale: f32) {
         if up == Up::Y && scale == 1.0 {
             return;
@@ -307,7 +309,7 @@ impl Scene {
         let turn = |v: Vec3| if up == Up::Z { Vec3::new(v.x, v.z, -v.y) } else { v };
         let offset = self.placement.offset;
         let turned = if up == Up::Z { DVec3::new(offset.x, offset.z, -offset.y) } else { offset };
-        // Adding zero makes -0 and 0 the same placement
+        // Adding zero turns -0 into 0, so that both give the same placement.
         self.placement.offset = turned * f64::from(scale) + DVec3::ZERO;
         for vertex in &mut self.vertices {
             vertex.position = turn(vertex.position) * scale;
@@ -323,8 +325,8 @@ impl Scene {
         }
     }
 
-    /// Gives a material where there is none, and checks the rest; a fault comes back as problem and mend. `extent` is this
-    /// scene's.
+    /// Adds the neutral material if there is none, and checks the invariants; an error is a problem and a hint.
+    /// `extent` is the extent of this scene.
     fn complete(&mut self, extent: Extent) -> Result<(), (String, &'static str)> {
         if self.materials.is_empty() {
             self.materials.push(Material::neutral());
@@ -332,7 +334,7 @@ impl Scene {
         self.first_fault(extent).map_or(Ok(()), Err)
     }
 
-    /// Counts the triangles without area of a scene that has been checked, and finds the box around all of them.
+    /// Sets the number of degenerate triangles of a checked scene, and returns the box around all triangles.
     fn survey(&mut self) -> Aabb {
         let vertices = &self.vertices;
         type Found = (usize, Aabb);
@@ -350,8 +352,8 @@ impl Scene {
     }
 }
 
-/// The bytes of a text file, or of one that may be text: without a byte order mark, which editors put before UTF-8 and which
-/// no format has a place for. Every reader takes its files from here, so that none sees one.
+/// Reads a file that is or may be text, and removes a UTF-8 byte order mark, which no format allows. All readers get
+/// their bytes from here.
 fn read_text(path: &Path) -> Result<Vec<u8>> {
     let mut content = read_file(path)?;
     if content.starts_with("\u{feff}".as_bytes()) {
@@ -360,19 +362,23 @@ fn read_text(path: &Path) -> Result<Vec<u8>> {
     Ok(content)
 }
 
+/// Refuses what is no regular file.
+fn regular_file(path: &Path) -> Result<std::fs::Metadata> {
+    let fault = |problem: String, hint| Error::file(path, None, problem, hint);
+    match std::fs::metadata(path) {
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => Err(fault("no such file".into(), "check the path")),
+        Err(e) => Err(fault(format!("cannot be read: {e}"), "check the path and its permissions")),
+        Ok(metadata) if !metadata.is_file() => {
+            Err(fault("not a regular file".into(), "name a file that holds a scene"))
+        }
+        Ok(metadata) => Ok(metadata),
+    }
+}
+
 /// The bytes of a file as they are.
 fn read_file(path: &Path) -> Result<Vec<u8>> {
     let fault = |problem: String, hint| Error::file(path, None, problem, hint);
-    let metadata = match std::fs::metadata(path) {
-        Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
-            return Err(fault("no such file".into(), "check the path"));
-        }
-        Err(e) => return Err(fault(format!("cannot be read: {e}"), "check the path and its permissions")),
-        Ok(metadata) if !metadata.is_file() => {
-            return Err(fault("not a regular file".into(), "name a file that holds a scene"));
-        }
-        Ok(metadata) => metadata,
-    };
+    let metadata = regular_file(path)?;
     let content = std::fs::read(path).map_err(|e| fault(format!("cannot be read: {e}"), "check its permissions"))?;
     sources::read(path, &metadata, &content);
     Ok(content)

@@ -1,14 +1,14 @@
-//! Smooth vertex normals, and triangles without area.
+//! Smooth vertex normals, and the test for triangles without area.
 //!
-//! A vertex normal is the sum of the normals of the triangles around it, weighted by their area. The area comes for
-//! free (it is the length of the cross product), while weights by angle need an arc cosine per corner, whose last bits
-//! differ between platforms: with areas, every machine computes the same scene and the same image hash.
+//! A vertex normal is the sum of the normals of the adjacent triangles, weighted by their area. The area is the length
+//! of the cross product, so it costs nothing extra. Weights by angle would need an arc cosine per corner, which differs
+//! in its last bits between platforms; with areas, all machines compute the same scene and the same image hash.
 
 use super::Triangle;
 use crate::math::{Aabb, Vertex};
 use glam::{DVec3, Vec3};
 
-/// Computes the normals of all vertices; zero where no triangle with an area touches the vertex.
+/// Computes the normals of all vertices. A vertex without an adjacent triangle that has an area gets a zero normal.
 pub fn smooth(vertices: &mut [Vertex], triangles: &[Triangle]) {
     for vertex in vertices.iter_mut() {
         vertex.normal = Vec3::ZERO;
@@ -27,7 +27,8 @@ pub fn smooth(vertices: &mut [Vertex], triangles: &[Triangle]) {
     }
 }
 
-/// Makes given normals unit vectors; those that are zero or not finite are computed. Returns how many were computed.
+/// Normalises the normals that the file gives, and computes those that are zero or not finite. Returns the number of
+/// computed normals.
 pub fn normalise_or_smooth(vertices: &mut [Vertex], triangles: &[Triangle]) -> usize {
     let mut repair = Vec::new();
     for (i, vertex) in vertices.iter_mut().enumerate() {
@@ -46,7 +47,8 @@ pub fn normalise_or_smooth(vertices: &mut [Vertex], triangles: &[Triangle]) -> u
     repair.len()
 }
 
-/// A unit vector of that direction, zero for zero; also for lengths whose square leaves the range of floats.
+/// The unit vector in the direction of `v`, or zero if `v` is zero or not finite. It is also correct if the square of
+/// the length leaves the range of floats.
 pub fn unit(v: Vec3) -> Vec3 {
     let largest = v.abs().max_element();
     if largest > 0.0 && largest.is_finite() {
@@ -57,17 +59,17 @@ pub fn unit(v: Vec3) -> Vec3 {
     }
 }
 
-/// A power of two (so that nothing is rounded) that brings the scene to a size of about one: products of edges neither
-/// overflow nor vanish, whatever the unit of length.
+/// A power of two that scales the scene to an extent of about one, so that products of edges neither overflow nor
+/// underflow for any unit of length. A power of two rounds nothing.
 fn scale(vertices: &[Vertex]) -> f32 {
     let extent = Aabb::from_points(vertices.iter().map(|v| v.position)).extent().max_element();
-    // Biased exponents: e stands for 2^(e - 127), and 254 - e for its inverse.
+    // The biased exponent e means 2^(e - 127), and 254 - e means its inverse.
     let exponent = (extent.max(0.0).to_bits() >> 23).clamp(1, 253);
     f32::from_bits((254 - exponent) << 23)
 }
 
-/// True if the triangle has no area. In double precision the products are exact for all but far-fetched coordinates, so
-/// this is zero and not a tolerance.
+/// True if the triangle has no area. Products of single-precision coordinates are exact in double precision unless
+/// their magnitudes differ extremely, so the comparison is with zero and needs no tolerance.
 pub fn is_degenerate(corners: [Vec3; 3]) -> bool {
     let [a, b, c]: [DVec3; 3] = corners.map(Vec3::as_dvec3);
     (b - a).cross(c - a) == DVec3::ZERO
@@ -103,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn degenerate_means_no_area_at_all() {
+    fn only_triangles_of_exactly_zero_area_are_degenerate() {
         let sliver = [Vec3::ZERO, Vec3::X, Vec3::new(0.5, 1e-30, 0.0)];
         assert!(!is_degenerate(sliver));
         assert!(is_degenerate([Vec3::ZERO, Vec3::splat(0.1), Vec3::splat(0.2)]));

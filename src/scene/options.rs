@@ -1,63 +1,64 @@
-//! What may be chosen when a file is read: the same few options for every format.
+//! Options for reading scene files, common to all formats.
 
 use super::did_you_mean;
 use crate::error::{Error, Result};
 use glam::DVec3;
 
-/// How a file is to be read. A reader heeds what means something in its format; [`super::load`] applies the rest.
+/// Options for reading a file. A reader applies those that its format supports ([`super::FORMATS`]); [`super::load`]
+/// applies [`Options::COMMON`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// The moment, in the file's time, at which moving geometry is frozen; `None`: where its animation begins.
+    /// Time at which animated geometry is evaluated, in the file's units; `None` means the start of the animation.
     pub time: Option<f64>,
-    /// Segments around a sphere, cone or other curved surface; `None`: the format's default.
+    /// Number of segments around a sphere, cone or other curved surface; `None` means the format's default.
     pub segments: Option<u32>,
-    /// False if a BART file's cones are to be left out, as the thesis did.
+    /// False if the cones of a BART file are omitted, as in the thesis of 2009.
     pub cones: bool,
-    /// True if includes may leave the folder of the file that is named.
+    /// True if files may include files outside of the scene's folder.
     pub outside: bool,
-    /// Which way is up in the file; the loaded scene's up is y.
+    /// The up axis of the file; in the loaded scene y is up.
     pub up: Up,
     /// Factor on all lengths, applied last.
     pub scale: f32,
-    /// Name of the camera among the file's: for BART of the keyframes that move the viewer, for glTF of the camera or its
-    /// node. `None`: BART's `camera`, glTF's first.
+    /// Name of the camera to use: in BART files of the viewer's keyframes, in glTF files of the camera or its node.
+    /// `None` means `camera` in BART files and the first camera in glTF files.
     pub camera: Option<String>,
-    /// Field of view in degrees for the file's camera, instead of the file's own.
+    /// Vertical field of view in degrees that overrides that of the file's camera.
     pub fov: Option<f32>,
-    /// Where the origin is put while the scene is in memory.
+    /// The point of the file that is the origin while the scene is in memory.
     pub origin: Origin,
-    /// What readers subtract from every position, in the file's coordinates; `None`: nothing, and a cache stays where
-    /// it is. [`super::load`] sets it by `origin`.
+    /// The vector that readers subtract from every position, in the file's coordinates; `None` means zero, and that a
+    /// cache keeps its placement. [`super::load`] derives it from `origin`.
     pub offset: Option<DVec3>,
-    /// OBJ: the material that shines although the file does not say so (exporters lose it); its faces become lights.
+    /// OBJ: name of a material to treat as emissive, for files of which the exporter has lost the emission.
     pub lamp: Option<String>,
 }
 
-/// An axis that points up.
+/// The axis of a file that points up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Up {
-    /// Nothing to do.
+    /// The scene is loaded as it is.
     #[default]
     Y,
-    /// As in most of MGF and in CAD: (x, y, z) becomes (x, z, -y).
+    /// (x, y, z) becomes (x, z, -y); most MGF and CAD files have z up.
     Z,
 }
 
-/// Where the origin is put while a scene is in memory, see [`super::Placement`].
+/// The choice of the origin of a scene in memory, see [`super::Placement`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Origin {
-    /// Into the scene, if its coordinates are larger than [`super::placement::FAR`] diagonals; otherwise where the
-    /// file has it.
+    /// The origin is moved into the scene if coordinates exceed [`super::placement::FAR`] diagonals of the scene;
+    /// otherwise it is the file's.
     #[default]
     Auto,
-    /// Where the file has it, however far that is.
+    /// The origin is always the file's.
     Keep,
-    /// At a point of the file, before `up` and `scale`.
+    /// The origin is this point in the file's coordinates, before `up` and `scale`.
     At(DVec3),
 }
 
 impl Origin {
-    /// Reads `auto`, `keep` or `x,y,z`.
+    /// Parses `auto`, `keep` or `x,y,z`.
     fn parse(value: &str) -> Option<Origin> {
         match value {
             "auto" => Some(Origin::Auto),
@@ -65,14 +66,14 @@ impl Origin {
             _ => {
                 let numbers: Vec<f64> = value.split(',').map(|x| x.trim().parse().ok()).collect::<Option<_>>()?;
                 let sound = |x: &f64| x.abs() <= super::placement::MAX_COORDINATE;
-                // Adding zero makes -0 and 0 the same origin
+                // Adding zero turns -0 into 0, so that both give the same origin.
                 let point = |&[x, y, z]: &[f64; 3]| Origin::At(DVec3::new(x, y, z) + DVec3::ZERO);
                 numbers.iter().all(sound).then(|| numbers.as_slice().try_into().ok().map(point))?
             }
         }
     }
 
-    /// What readers are to subtract, as far as it is known before anything has been read.
+    /// The value of [`Options::offset`] before the first reading of the file.
     fn offset(self) -> Option<DVec3> {
         match self {
             Origin::Auto => None,
@@ -92,7 +93,7 @@ impl std::fmt::Display for Origin {
     }
 }
 
-/// The settings in `key=value,...`. A piece without a key belongs to the one before it if that is a point.
+/// Splits `key=value,...` into settings. A piece without a key continues a point, as in `origin=1,2,3`.
 pub(super) fn settings(text: &str) -> Vec<String> {
     let mut settings: Vec<String> = Vec::new();
     for piece in text.split(',').filter(|piece| !piece.is_empty()) {
@@ -122,7 +123,7 @@ impl Default for Options {
     }
 }
 
-/// Most segments of a curved surface.
+/// The largest number of segments of a curved surface.
 pub const MAX_SEGMENTS: u32 = 1024;
 
 impl Options {
@@ -130,22 +131,22 @@ impl Options {
     pub const KEYS: [&str; 10] =
         ["time", "segments", "cones", "outside", "up", "scale", "origin", "camera", "fov", "lamp"];
 
-    /// Those that every file takes; a file's format may heed more ([`super::FORMATS`]).
+    /// The options that all formats support; [`super::FORMATS`] lists those of each format.
     pub const COMMON: [&str; 3] = ["up", "scale", "fov"];
 
-    /// Reads `key=value,...`; `what` stands in errors.
+    /// Parses `key=value,...`; errors refer to the scene `spec`.
     ///
     /// # Errors
     /// [`Error::Input`] for the first unknown key or bad value.
-    pub fn parse(what: &str, settings: &str) -> Result<Options> {
+    pub fn parse(spec: &str, settings: &str) -> Result<Options> {
         let mut options = Options::default();
         for setting in self::settings(settings) {
             let (key, value) = setting.split_once('=').unwrap_or((&setting, ""));
-            let wrong = |hint: &str| Error::argument(what, format!("{key}: `{value}` does not do"), hint);
+            let wrong = |hint: &str| Error::argument(spec, format!("{key}: the value `{value}` is not valid"), hint);
             match key {
                 "time" => match value.parse() {
                     Ok(time) if f64::is_finite(time) => options.time = Some(time),
-                    _ => return Err(wrong("give a moment of the file's animation, as time=3")),
+                    _ => return Err(wrong("give a time of the file's animation, as in time=3")),
                 },
                 "segments" => match value.parse() {
                     Ok(segments) if (3..=MAX_SEGMENTS).contains(&segments) => options.segments = Some(segments),
@@ -186,15 +187,15 @@ impl Options {
                 },
                 _ => {
                     let problem = format!("scene files have no option `{key}`");
-                    return Err(Error::argument(what, problem, did_you_mean(key, &Self::KEYS)));
+                    return Err(Error::argument(spec, problem, did_you_mean(key, &Self::KEYS)));
                 }
             }
         }
         Ok(options)
     }
 
-    /// The options that differ from those of `base`, `:key=value,...`, or nothing.
-    pub fn suffix(&self, base: &Options) -> String {
+    /// The options that differ from those of `base` as `:key=value,...`; empty if none differs.
+    pub(crate) fn suffix(&self, base: &Options) -> String {
         let mut set = Vec::new();
         let mut text = |key: &str, value: Option<String>| set.extend(value.map(|value| format!("{key}={value}")));
         let yes = |yes: bool| if yes { "yes".to_owned() } else { "no".to_owned() };

@@ -1,36 +1,37 @@
-//! Where a scene lies in memory, and where in its file.
+//! The placement of a scene: the conversion between its coordinates in the file and in memory.
 //!
-//! Vertices, lights and cameras are single precision, which is fine near the origin and coarse far from it: at
-//! 5,000,000 the next number is half a unit away. A scene far from its origin is therefore moved there while its file
-//! is read, in double precision, and rounded once. A scene whose extent is so small or so large that products of
-//! lengths would leave the range of floats is scaled by a power of two, which changes no bit of its shape. All that
-//! users see and give is in the file's coordinates; [`Placement`] leads from one to the other.
+//! Vertices, lights and cameras are in single precision, which is coarse far from the origin: at 5,000,000 the spacing
+//! of numbers is half a unit. A scene far from the origin is therefore moved to the origin while its file is read, in
+//! double precision, and rounded once. A scene with an extent so small or so large that products of lengths would leave
+//! the range of floats is scaled by a power of two, which changes no bit of its shape. All input and output of users is
+//! in the file's coordinates; [`Placement`] converts them.
 
 use super::Scene;
 use crate::math::Aabb;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-/// How many diagonals of a scene its coordinates may be away from the origin before the scene is moved there. Up to
-/// here rounding moves a coordinate by at most `2^-24 * 64` = 4e-6 of the diagonal, less than half of the surface
-/// epsilon.
+/// A scene is moved to the origin if a coordinate exceeds this many of the scene's diagonals. Up to here rounding moves
+/// a coordinate by at most `2^-24 * 64` = 4e-6 of the diagonal, less than half of the surface epsilon.
 pub const FAR: f64 = 64.0;
 
-/// Coordinates beyond this are refused, and extents below its inverse.
+/// The largest coordinate of a scene; its inverse is the smallest extent.
 pub const MAX_COORDINATE: f64 = 1e18;
 
-/// Extents between these, 2^-8 and 2^24, stay as they are: products of lengths are floats, rays from 2^23 diagonals away
-/// have distances below [`crate::math::SLACK`], and [`crate::math::PLANE_SHIFT_MIN`] is small compared with the scene.
+/// Scenes with an extent in this range, 2^-8 to 2^24, are not scaled: products of lengths are in the range of floats,
+/// rays from 2^23 diagonals away have distances below [`crate::math::SLACK`], and [`crate::math::PLANE_SHIFT_MIN`] is
+/// small in relation to the scene.
 const COMFORTABLE: std::ops::RangeInclusive<f64> = 1.0 / (1 << 8) as f64..=(1 << 24) as f64;
 
-/// A light that is farther away than this, in units of about the scene's extent, is brought nearer in its direction:
-/// lights do not fade, the direction changes by 2^-40, and squares of distances stay in range.
+/// A light farther away than this many extents of the scene is moved nearer along its direction. Lights have no
+/// attenuation and the direction changes by 2^-40 only, while squares of distances stay in the range of floats.
 const FARTHEST_LIGHT: f64 = (1u64 << 40) as f64;
 
-/// No light is farther away than this: the sum of three squares of it is a float.
+/// The largest distance of a light from the origin: the sum of three squares of it is in the range of floats.
 const FARTHEST_OF_ALL: f64 = (1u64 << 60) as f64;
 
-/// What leads from a file's coordinates (behind `up=` and `scale=`) to those in memory: `(file - offset) * 2^exponent`.
+/// The conversion from a file's coordinates (after `up=` and `scale=`) to those in memory:
+/// `(file - offset) * 2^exponent`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Placement {
     /// The point of the file that is the origin in memory.
@@ -39,62 +40,62 @@ pub struct Placement {
     pub exponent: i32,
 }
 
-/// A power of two, exactly; exponents beyond the range of normal doubles are cut to it.
+/// The exact power of two; the exponent is clamped to the range of normal doubles.
 pub fn power_of_two(exponent: i32) -> f64 {
     f64::from_bits(((1023 + exponent.clamp(-1022, 1023)) as u64) << 52)
 }
 
 /// The exponent of the largest power of two that is not above a positive finite number.
-pub fn exponent_of(number: f64) -> i32 {
+pub(crate) fn exponent_of(number: f64) -> i32 {
     let exponent = |x: f64| (x.to_bits() >> 52) as i32 - 1023;
-    // Of a denormal number the bits say nothing
+    // The bits of a denormal number do not hold its exponent.
     if number < f64::MIN_POSITIVE { exponent(number * power_of_two(100)) - 100 } else { exponent(number) }
 }
 
 impl Placement {
-    /// A scene that lies in memory as in its file.
+    /// The placement of a scene with equal coordinates in memory and in its file.
     pub const IDENTITY: Placement = Placement { offset: DVec3::ZERO, exponent: 0 };
 
-    /// True if the scene lies in memory as in its file.
+    /// True if the coordinates in memory are those of the file.
     pub fn is_identity(&self) -> bool {
         *self == Placement::IDENTITY
     }
 
-    /// True for one that a scene may have: it is used to check placements read from caches.
+    /// True if a scene can have this placement; checks placements that are read from caches.
     pub(super) fn is_sound(&self) -> bool {
         self.offset.is_finite() && self.exponent.abs() <= 256
     }
 
-    /// Where a point of the file lies in memory.
+    /// Converts a point from the file's coordinates to those in memory.
     pub fn place(&self, file: DVec3) -> Vec3 {
         ((file - self.offset) * power_of_two(self.exponent)).as_vec3()
     }
 
-    /// Where a point in memory lies in the file.
+    /// Converts a point from the coordinates in memory to those of the file.
     pub fn file(&self, placed: Vec3) -> DVec3 {
         placed.as_dvec3() * power_of_two(-self.exponent) + self.offset
     }
 
-    /// A length in memory as it is in the file.
+    /// Converts a length in memory to a length in the file.
     pub fn length(&self, placed: f32) -> f64 {
         f64::from(placed) * power_of_two(-self.exponent)
     }
 
-    /// The same in as few digits as lead back to it.
+    /// Like [`Placement::length`], but with the fewest decimal digits that convert back to the length in memory.
     pub fn exact(&self, placed: f32) -> f64 {
         Placement { offset: DVec3::ZERO, ..*self }.coordinates(Vec3::splat(placed))[0]
     }
 
-    /// The point in memory that is read back where this one is written down in the file's coordinates: doubles far
-    /// from the origin do not hold the last bits of what lies near it.
+    /// Rounds a point in memory to one that survives a conversion to the file's coordinates and back: doubles far from
+    /// the origin do not hold the last bits of a float near it.
     pub fn snap(&self, placed: Vec3) -> Vec3 {
         if self.offset == DVec3::ZERO { placed } else { self.place(self.file(placed)) }
     }
 
-    /// The coordinates of a point in memory, as they are in the file: the shortest numbers that lead back to the point.
+    /// Like [`Placement::file`], but with the fewest decimal digits that convert back to the point in memory.
     pub fn coordinates(&self, placed: Vec3) -> [f64; 3] {
         if self.is_identity() {
-            // A float in its shortest digits, as a double
+            // The double with the shortest digits of the float
             return placed.to_array().map(|x| x.to_string().parse().unwrap_or(f64::from(x)));
         }
         let (file, factor) = (self.file(placed), power_of_two(self.exponent));
@@ -106,20 +107,19 @@ impl Placement {
         })
     }
 
-    /// The same as text.
+    /// The coordinates of a point in memory as `[x, y, z]` in the file.
     pub fn point(&self, placed: Vec3) -> String {
         let [x, y, z] = self.coordinates(placed).map(number);
         format!("[{x}, {y}, {z}]")
     }
 }
 
-/// A number as users see it: very large and small ones with an exponent.
-pub fn number(x: f64) -> String {
+/// Formats a number for users; very large and very small numbers have an exponent.
+pub(crate) fn number(x: f64) -> String {
     if x == 0.0 || (1e-7..1e16).contains(&x.abs()) { x.to_string() } else { format!("{x:e}") }
 }
 
-/// The box around all vertices that triangles use. Indices that lead nowhere, which nobody has looked for yet, are
-/// passed over.
+/// The box around all vertices that triangles use. Indices out of range, which have not been checked yet, are ignored.
 pub(super) fn used_bounds(scene: &Scene) -> Aabb {
     let corners = |t: &super::Triangle| {
         let position = |v: u32| scene.vertices.get(v as usize).map(|vertex| vertex.position);
@@ -129,7 +129,7 @@ pub(super) fn used_bounds(scene: &Scene) -> Aabb {
     scene.triangles.par_chunks(1 << 14).map(bounds).reduce(|| Aabb::EMPTY, Aabb::union)
 }
 
-/// A box in double precision.
+/// An axis-aligned box in double precision.
 #[derive(Clone, Copy)]
 struct Bounds {
     min: DVec3,
@@ -137,18 +137,19 @@ struct Bounds {
 }
 
 impl Bounds {
-    /// The largest distance of a coordinate from zero.
+    /// The largest absolute coordinate.
     fn reach(&self) -> f64 {
         self.min.abs().max(self.max.abs()).max_element()
     }
 
-    /// True if a box with coordinates so large should be moved to the origin.
+    /// True if a scene with these bounds is moved to the origin.
     fn is_far(&self) -> bool {
         self.reach() > FAR * (self.max - self.min).length()
     }
 
-    /// Where to put the origin: near the middle, on axes whose coordinates are larger than the extent, at a multiple
-    /// of a power of two that is a quarter to a half of it, so that offsets are short numbers.
+    /// The new origin of the scene. On axes with coordinates larger than twice the extent it is near the centre, at a
+    /// multiple of a power of two that is a quarter to a half of the extent, so that offsets have few digits; on other
+    /// axes it is zero.
     fn origin(&self) -> DVec3 {
         let (middle, extent) = ((self.min + self.max) * 0.5, (self.max - self.min).max_element());
         let step = if extent > 0.0 { power_of_two(exponent_of(extent) - 1) } else { 0.0 };
@@ -161,12 +162,12 @@ impl Bounds {
     }
 }
 
-/// Triangles that are looked at where a few tell enough.
+/// Number of triangles in the sample of [`is_surely_near`].
 const FEW: usize = 256;
 
-/// True if a few triangles of a part tell that the whole, which is placed as the part is, is not far from the origin:
-/// of a scene that is, every corner lies farther out than 63 of the scene's diagonals, which is more than 63
-/// diagonals of those few.
+/// True if a sample of a part's triangles proves that the whole scene, which has the same placement, is not far from
+/// the origin. In a scene that is far, every corner is more than 63 of the scene's diagonals away, and therefore more
+/// than 63 diagonals of the sample.
 fn is_surely_near(part: &Scene) -> bool {
     let few = part.triangles.iter().step_by(part.triangles.len() / FEW + 1);
     let position = |v: u32| part.vertices.get(v as usize).map(|vertex| vertex.position);
@@ -174,22 +175,22 @@ fn is_surely_near(part: &Scene) -> bool {
     !bounds.is_empty() && distance(bounds) < FAR - 2.0
 }
 
-/// How far a scene lies from the origin in memory, in diagonals; infinite for a point that is not there.
+/// The largest coordinate of a scene in memory, in diagonals of the scene; infinite for a single point off the origin.
 pub(super) fn distance(bounds: Aabb) -> f64 {
     let bounds = Bounds { min: bounds.min.as_dvec3(), max: bounds.max.as_dvec3() };
     let (reach, diagonal) = (bounds.reach(), (bounds.max - bounds.min).length());
     if reach > 0.0 { reach / diagonal } else { 0.0 }
 }
 
-/// Where the parts of a scene, which were read with placements of their own, should have the origin instead; `None`
-/// if no move is needed.
+/// The common offset with which the parts of a scene have to be read again; `None` if their placements are equal and
+/// the scene is not far from the origin.
 pub(super) fn better_offset<'a>(parts: impl Iterator<Item = &'a Scene> + Clone) -> Option<DVec3> {
     let first = parts.clone().next()?.placement;
     let agree = parts.clone().all(|part| part.placement == first);
     if agree && first.exponent == 0 && parts.clone().any(is_surely_near) {
         return None;
     }
-    // Around the origin in memory if there is one, so that nothing is rounded
+    // Bounds are relative to the common origin in memory, if there is one, so that nothing is rounded.
     let base = if agree { first.offset } else { DVec3::ZERO };
     let union = |a: Bounds, b: Bounds| Bounds { min: a.min.min(b.min), max: a.max.max(b.max) };
     let bounds = parts.filter_map(|part| {
@@ -203,7 +204,7 @@ pub(super) fn better_offset<'a>(parts: impl Iterator<Item = &'a Scene> + Clone) 
 }
 
 impl Scene {
-    /// Brings a scene to another placement. Positions are rounded once more.
+    /// Converts the scene to another placement, which rounds positions once more.
     pub(super) fn move_to(&mut self, placement: Placement) {
         if placement == self.placement {
             return;
@@ -215,8 +216,8 @@ impl Scene {
         self.placement = placement;
     }
 
-    /// Scales a scene by a power of two if its extent in the file is not comfortable, and brings lights nearer that are
-    /// too far away. `bounds` is the box around its triangles.
+    /// Scales a scene by a power of two if its extent in the file is not [`COMFORTABLE`], and moves lights nearer that
+    /// are too far away. `bounds` is the box around its triangles.
     pub(super) fn normalise(&mut self, bounds: Aabb) {
         let extent = self.placement.length(bounds.extent().max_element());
         if !(extent > 0.0 && extent.is_finite()) {
@@ -249,19 +250,18 @@ impl Scene {
         }
     }
 
-    /// What is wrong with the size of a scene, if something is: the problem and the advice. `bounds` is the box around its
-    /// triangles.
+    /// The problem and the hint for a scene that is too large or too small. `bounds` is the box around its triangles.
     pub(super) fn size_fault(&self, bounds: Aabb) -> Option<(String, &'static str)> {
         let [min, max] = [bounds.min, bounds.max].map(|corner| self.placement.file(corner));
         let reach = min.abs().max(max.abs()).max_element();
         if !(reach <= MAX_COORDINATE) {
-            let problem = format!("the scene is too large: it reaches to {reach:e}, and coordinates end at 1e18");
+            let problem = format!("the scene is too large: its largest coordinate is {reach:e}, but the limit is 1e18");
             return Some((problem, "scale it down, as in FILE:scale=1e-6"));
         }
         let extent = self.placement.length(bounds.extent().max_element());
         if extent > 0.0 && extent < 1.0 / MAX_COORDINATE {
             let extent = self.placement.exact(bounds.extent().max_element());
-            let problem = format!("the scene is too small: its extent is {extent:e}, and the smallest is 1e-18");
+            let problem = format!("the scene is too small: its extent is {extent:e}, but the limit is 1e-18");
             return Some((problem, "scale it up, as in FILE:scale=1e6"));
         }
         None
@@ -282,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_down_leads_back() {
+    fn written_coordinates_convert_back_to_the_same_point() {
         let mut random = 1u64;
         let mut next = || {
             random = random.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
@@ -305,7 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn only_axes_that_are_far_are_moved_by_short_numbers() {
+    fn only_far_axes_are_moved_and_offsets_have_few_digits() {
         let bounds = |min: [f64; 3], max: [f64; 3]| Bounds { min: min.into(), max: max.into() };
         let utm = bounds([499984.0, 0.0, 4649760.0], [500016.0, 12.0, 4649792.0]);
         assert!(utm.is_far());

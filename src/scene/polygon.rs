@@ -1,50 +1,53 @@
-//! Polygons into triangles: fans where that is right, ears (by the crate earcut) where it is not. One rule for every
-//! format: a polygon is the fan (0, k + 1, k + 2) of its corners in file order wherever that fan covers it, as it does if
-//! the polygon is convex, or all of it can be seen from its first corner.
+//! Triangulates polygons by the same rule for every format: a polygon becomes the fan (0, k + 1, k + 2) of its corners
+//! in file order if that fan covers it, which is the case if the polygon is convex or star-shaped around its first
+//! corner. Otherwise its ears are clipped by the crate `earcut`.
 
 use earcut::Earcut;
 use glam::{DVec2, DVec3};
 
-/// Larger polygons are not examined: ear clipping may take the square of the number of corners.
+/// Polygons with more corners always become fans: the time of ear clipping can grow with the square of their number.
 pub const MAX_CORNERS: usize = 4096;
 
-/// What may be cut in all, as the sum of the squares of numbers of corners: so much in any case, and so much more per byte of
-/// the file. (A corner needs some bytes: polygons of a few hundred corners may be as many as there is room for.)
+/// The limit of ear clipping per scene, as the sum of the squared numbers of corners: a base and a share per byte of
+/// the files. A corner takes several bytes, so polygons of a few hundred corners never exceed it.
 const WORK: usize = 1 << 27;
 const WORK_PER_BYTE: usize = 128;
 
-/// Newell's normal of a polygon, also of one that is not quite planar: its length is twice the area, its direction the
-/// side on which the corners turn counter-clockwise. Zero if there is no area, or if it cuts itself into equal halves.
+/// Newell's normal of a polygon, which need not be planar. Its length is twice the area; seen from its side, the
+/// corners are counter-clockwise. It is zero if the polygon has no area, or intersects itself such that areas cancel
+/// out.
 pub fn newell(corners: &[DVec3]) -> DVec3 {
     let origin = corners.first().copied().unwrap_or_default();
     let pairs = corners.windows(2).skip(1);
     pairs.fold(DVec3::ZERO, |sum, pair| sum + (pair[0] - origin).cross(pair[1] - origin))
 }
 
-/// Cuts polygons into triangles; keeps its memory between polygons.
+/// Triangulates polygons; reuses its memory between polygons.
 #[derive(Default)]
 pub struct Triangulator {
     flat: Vec<[f64; 2]>,
     earcut: Option<Earcut<f64>>,
     indices: Vec<u32>,
     triangles: Vec<[u32; 3]>,
-    /// Of [`WORK`].
+    /// Sum of the squared numbers of corners so far.
     spent: usize,
-    /// Of the file.
+    /// Size of the files so far.
     bytes: usize,
 }
 
 impl Triangulator {
-    /// Tells the size of a file that is being read: more may be cut.
+    /// Adds the size of a file, which raises the limit of ear clipping.
     pub fn read(&mut self, bytes: usize) {
         self.bytes = self.bytes.saturating_add(bytes);
     }
 
-    /// Triangles of corner indices, turning as the polygon does. `holes` has the index at which each hole begins;
-    /// `normal` is Newell's of the outer corners, of which there are three at least.
+    /// The triangles of a polygon, as indices of its corners, with the polygon's orientation. `holes` has the index of
+    /// the first corner of each hole; `normal` is Newell's normal of the outer corners, of which there are at least
+    /// three.
     ///
-    /// Without holes these are always `corners.len() - 2`, so that triangles can be counted from the file. What cannot
-    /// be cut (it cuts itself, has too many corners, or comes behind too many of that kind) is the fan of its outer corners.
+    /// Without holes there are always `corners.len() - 2` triangles, so that they can be counted from the file. A
+    /// polygon that cannot be clipped (it intersects itself, has too many corners, or the limit is exceeded) becomes
+    /// the fan of its outer corners.
     pub fn triangles(&mut self, corners: &[DVec3], holes: &[u32], normal: DVec3) -> &[[u32; 3]] {
         self.triangles.clear();
         let fan = corners.len() == 3 || corners.len() > MAX_CORNERS || holes.is_empty() && fan_covers(corners, normal);
@@ -55,7 +58,7 @@ impl Triangulator {
         &self.triangles
     }
 
-    /// Cuts ears; false if there are not as many as there should be.
+    /// Clips ears; returns false if that does not give the expected number of triangles.
     fn cut(&mut self, corners: &[DVec3], holes: &[u32], normal: DVec3) -> bool {
         if self.spent > WORK.saturating_add(WORK_PER_BYTE.saturating_mul(self.bytes)) {
             return false;
@@ -78,7 +81,7 @@ impl Triangulator {
         true
     }
 
-    /// Drops the coordinate along which the normal is longest, so that the polygon turns counter-clockwise.
+    /// Projects the polygon along the largest component of its normal, such that it is counter-clockwise.
     fn flatten(&mut self, corners: &[DVec3], normal: DVec3) {
         let axis = (0..3).max_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs())).unwrap_or(2);
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -88,8 +91,8 @@ impl Triangulator {
     }
 }
 
-/// True if no triangle of the fan turns against the normal, beyond what rounding of coordinates may do: then the triangles
-/// do not overlap, since their signed areas add up to the polygon's.
+/// True if no triangle of the fan is oriented against the normal by more than rounding errors. The triangles then do
+/// not overlap, since their signed areas sum up to the polygon's.
 fn fan_covers(corners: &[DVec3], normal: DVec3) -> bool {
     let slack = 1e-6 * normal.length_squared();
     corners[1..].windows(2).all(|p| (p[0] - corners[0]).cross(p[1] - corners[0]).dot(normal) >= -slack)
@@ -118,13 +121,14 @@ mod tests {
         for plane in PLANES {
             let hexagon = [[0.0, 0.0], [1.0, -1.0], [2.0, 0.0], [2.0, 1.0], [1.0, 2.0], [0.0, 1.0]];
             assert_eq!(triangles(&hexagon, plane), [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]]);
-            // An arrow from its notch, and from its tip: all of it can be seen.
+            // An arrow that starts at its notch: all of it is visible from there.
             let arrow = [[0.0, 1.0], [-2.0, 2.0], [0.0, -1.0], [2.0, 2.0]];
             assert_eq!(triangles(&arrow, plane), [[0, 1, 2], [0, 2, 3]]);
         }
     }
 
-    /// An L, from every corner on, both ways around: the areas add up, and all triangles turn as the polygon does.
+    /// An L that starts at each of its corners, in both orientations: the areas sum up, and all triangles have the
+    /// polygon's orientation.
     #[test]
     fn concave_polygons_are_covered_once() {
         let shape = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [1.0, 1.0], [1.0, 3.0], [0.0, 3.0]];
@@ -149,9 +153,9 @@ mod tests {
         }
     }
 
-    /// A comb of 4000 corners: what it costs to cut could be asked for again and again, in a few bytes.
+    /// Clips a comb of 4000 corners repeatedly: a small file could otherwise repeat an expensive polygon many times.
     #[test]
-    fn what_may_be_cut_has_an_end_that_grows_with_the_file() {
+    fn the_limit_of_ear_clipping_grows_with_the_file() {
         let upper = (0..2000).map(|i| [f64::from(i), f64::from(1000 * (i % 2) + 1)]);
         let lower = (0..2000).rev().map(|i| [f64::from(i), f64::from(1000 * (i % 2))]);
         let corners: Vec<DVec3> = upper.chain(lower).map(PLANES[0]).collect();
@@ -169,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn hopeless_ones_are_fans_too() {
+    fn polygons_that_cannot_be_clipped_are_fans() {
         let bow_tie = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
         let point = [[1.0, 1.0]; 5];
         let line = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [1.0, 0.0]];

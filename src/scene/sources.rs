@@ -1,7 +1,8 @@
-//! What files a scene is made from: noted where files are read ([`super::read_file`]), while somebody asks for it.
+//! Records the files that a scene is read from: [`super::read_file`] adds every file while a caller of [`record`]
+//! waits.
 //!
-//! Readers know nothing of it, and all of them read on the thread that they are called on; so what is asked for is kept per
-//! thread.
+//! The recording is thread-local, so that readers need no parameter for it. All readers read their files on the thread
+//! on which they are called.
 
 use std::cell::RefCell;
 use std::ffi::OsStr;
@@ -9,91 +10,91 @@ use std::fs::Metadata;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-/// File systems tell times in steps; a file that was modified less than this before it was read may be modified again at
-/// what they take for the same time.
-const STEP: Duration = Duration::from_millis(100);
+/// An upper bound of the resolution of file times. A file that was modified less than this before it was read may be
+/// modified again without a visible change of its time.
+const TIME_RESOLUTION: Duration = Duration::from_millis(100);
 
-/// What stands behind a [`Source`]'s path.
+/// The kind of file that a [`SourceFile`] refers to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub enum Kind {
+pub enum SourceKind {
     /// A file; the hash is BLAKE3 of its bytes.
     File,
-    /// A folder that is a scene as a whole; the hash is BLAKE3 of the names of its files.
+    /// A folder with the files of one scene; the hash is BLAKE3 of their names.
     Folder,
-    /// A cache; the hash is that of the scene in it.
+    /// A cache; the hash is the content hash in its header.
     Cache,
-    /// A file that is named, but was not there.
+    /// A file that was searched and did not exist.
     Absent,
 }
 
-/// A file that a scene is made from.
+/// A file that a scene was read from, with its state at that time.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Source {
-    /// Where it is, its folder without links.
+pub struct SourceFile {
+    /// Path of the file; its folder is free of links.
     pub path: PathBuf,
-    /// What it is.
-    pub kind: Kind,
-    /// Its length.
+    pub kind: SourceKind,
+    /// Size in bytes; of a folder, the number of files.
     pub bytes: u64,
-    /// When it was modified, in nanoseconds since 1970; `None` if that would not tell it from a later state.
+    /// Time of modification in nanoseconds since 1970; `None` if a later modification could have the same time.
     pub modified: Option<u64>,
-    /// When the system noted its last change, in the same way: see [`changed`].
+    /// Time of the last change that the system noted, see [`changed`]; `None` as for `modified`.
     pub changed: Option<u64>,
-    /// What it holds, hexadecimal; empty if only paths were asked for.
+    /// Hash of the content, hexadecimal; empty if only paths were requested.
     pub hash: String,
 }
 
-struct Record {
+struct SourceLog {
     hashes: bool,
-    sources: Vec<Source>,
+    sources: Vec<SourceFile>,
 }
 
 thread_local! {
-    static RECORD: RefCell<Option<Record>> = const { RefCell::new(None) };
+    static LOG: RefCell<Option<SourceLog>> = const { RefCell::new(None) };
 }
 
-/// Does something, and returns with it what files were read meanwhile, each once; with their hashes if those are asked for.
-/// Records may lie inside each other.
-pub fn record<T>(hashes: bool, work: impl FnOnce() -> T) -> (T, Vec<Source>) {
-    let outer = RECORD.take();
+/// Runs `work`, and returns its result and the files that were read meanwhile, each once. They have hashes if `hashes`
+/// is set. Calls may be nested.
+pub fn record<T>(hashes: bool, work: impl FnOnce() -> T) -> (T, Vec<SourceFile>) {
+    let outer = LOG.take();
     let hashes = hashes || outer.as_ref().is_some_and(|outer| outer.hashes);
-    RECORD.set(Some(Record { hashes, sources: Vec::new() }));
+    LOG.set(Some(SourceLog { hashes, sources: Vec::new() }));
     let result = work();
-    let sources = RECORD.take().map_or(Vec::new(), |record| record.sources);
-    RECORD.set(outer);
+    let sources = LOG.take().map_or(Vec::new(), |log| log.sources);
+    LOG.set(outer);
     sources.iter().for_each(|source| add(|_| source.clone()));
     (result, sources)
 }
 
-/// Notes a source, if anybody asks; what makes it is told whether hashes are wanted.
-pub fn add(source: impl FnOnce(bool) -> Source) {
-    RECORD.with_borrow_mut(|record| {
-        if let Some(record) = record {
-            let source = source(record.hashes);
-            if !record.sources.contains(&source) {
-                record.sources.push(source);
+/// Adds a source to the current recording, if there is one. The argument of `source` tells whether hashes are
+/// requested.
+pub fn add(source: impl FnOnce(bool) -> SourceFile) {
+    LOG.with_borrow_mut(|log| {
+        if let Some(log) = log {
+            let source = source(log.hashes);
+            if !log.sources.contains(&source) {
+                log.sources.push(source);
             }
         }
     });
 }
 
-/// Notes a file that was read; `metadata` is from before that.
+/// Adds a file that was read; `metadata` was queried before the file was opened.
 pub fn read(path: &Path, metadata: &Metadata, content: &[u8]) {
-    add(|hashes| Source {
-        path: whole(path),
-        kind: Kind::File,
+    add(|hashes| SourceFile {
+        path: resolve_folder(path),
+        kind: SourceKind::File,
         bytes: content.len() as u64,
-        modified: modified(metadata).filter(settled),
-        changed: changed(metadata).filter(settled),
+        modified: modified(metadata).filter(is_conclusive),
+        changed: changed(metadata).filter(is_conclusive),
         hash: if hashes { blake3::hash(content).to_hex().to_string() } else { String::new() },
     });
 }
 
-/// Notes that a file was looked for and is not there.
+/// Adds a file that was searched and does not exist.
 pub fn absent(path: &Path) {
-    add(|_| Source {
-        path: whole(path),
-        kind: Kind::Absent,
+    add(|_| SourceFile {
+        path: resolve_folder(path),
+        kind: SourceKind::Absent,
         bytes: 0,
         modified: None,
         changed: None,
@@ -101,11 +102,11 @@ pub fn absent(path: &Path) {
     });
 }
 
-/// Notes a folder with these files.
+/// Adds a folder with these files.
 pub fn folder(path: &Path, files: &[PathBuf]) {
-    add(|_| Source {
+    add(|_| SourceFile {
         path: path.canonicalize().unwrap_or_else(|_| path.to_owned()),
-        kind: Kind::Folder,
+        kind: SourceKind::Folder,
         bytes: files.len() as u64,
         modified: None,
         changed: None,
@@ -113,7 +114,7 @@ pub fn folder(path: &Path, files: &[PathBuf]) {
     });
 }
 
-/// A hash of the files' names.
+/// BLAKE3 of the files' names, hexadecimal.
 pub fn names_hash(files: &[PathBuf]) -> String {
     let mut hasher = blake3::Hasher::new();
     for name in files.iter().map(|file| file.file_name().unwrap_or(OsStr::new("")).as_encoded_bytes()) {
@@ -123,14 +124,15 @@ pub fn names_hash(files: &[PathBuf]) -> String {
     hasher.finalize().to_hex().to_string()
 }
 
-/// When a file was modified, in nanoseconds since 1970.
+/// Time of modification of a file, in nanoseconds since 1970.
 pub fn modified(metadata: &Metadata) -> Option<u64> {
     let since = metadata.modified().ok()?.duration_since(SystemTime::UNIX_EPOCH).ok()?;
     u64::try_from(since.as_nanos()).ok()
 }
 
-/// When the system noted the last change of a file's content, name or permissions, in nanoseconds since 1970. The other
-/// time is set back by `touch`, `cp -p`, archives and rsync; this one by nobody. `None` on systems without it.
+/// Time at which the system noted the last change of a file's content, name or permissions (Unix: ctime), in
+/// nanoseconds since 1970. Unlike the time of modification it cannot be set by `touch`, `cp -p`, archives and rsync.
+/// `None` on systems without it.
 #[cfg(unix)]
 pub fn changed(metadata: &Metadata) -> Option<u64> {
     use std::os::unix::fs::MetadataExt;
@@ -143,15 +145,15 @@ pub fn changed(_: &Metadata) -> Option<u64> {
     None
 }
 
-/// True if whatever is done to the file from now on will show in this time of it, in nanoseconds since 1970.
-fn settled(time: &u64) -> bool {
+/// True if any later change of the file will give it another time than this one, in nanoseconds since 1970.
+fn is_conclusive(time: &u64) -> bool {
     let time = SystemTime::UNIX_EPOCH + Duration::from_nanos(*time);
-    SystemTime::now().duration_since(time).is_ok_and(|age| age >= STEP)
+    SystemTime::now().duration_since(time).is_ok_and(|age| age >= TIME_RESOLUTION)
 }
 
-/// The path with its folder free of links. The file itself may be one: then it is the link that counts, since it may come
-/// to lead elsewhere.
-pub fn whole(path: &Path) -> PathBuf {
+/// The path with all links in its folder resolved. If the file itself is a link, the link is kept, since its target may
+/// change.
+pub fn resolve_folder(path: &Path) -> PathBuf {
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
     match (folder.canonicalize(), path.file_name()) {
         (Ok(folder), Some(name)) => folder.join(name),

@@ -1,6 +1,6 @@
-//! "Did you mean": the known name that is closest to a mistyped one.
+//! Suggestions ("did you mean") for mistyped names.
 
-/// A mend for an unknown name: the closest known one, if it is close, and all that exist.
+/// The hint for an unknown name: the closest known name, if it is close, and all known names.
 pub(crate) fn did_you_mean(given: &str, known: &[&str]) -> String {
     let all = known.join(", ");
     match closest(given, known) {
@@ -9,9 +9,9 @@ pub(crate) fn did_you_mean(given: &str, known: &[&str]) -> String {
     }
 }
 
-/// The known name that needs the fewest edits, if they are at most a third of its letters (or one).
+/// The known name with the smallest edit distance, if that is at most a third of its length (or 1).
 fn closest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
-    // Nothing that long is a slip of the finger; keeps the table small.
+    // A name this long is not a typing error. The limit keeps the table of the edit distance small.
     if given.len() > 64 {
         return None;
     }
@@ -20,7 +20,7 @@ fn closest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
     (distance(best) <= (best.len() / 3).max(1)).then_some(best)
 }
 
-/// Levenshtein's distance.
+/// The Levenshtein distance of two names.
 fn edits(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().collect();
     let mut row: Vec<usize> = (0..=b.len()).collect();
@@ -41,7 +41,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn finds_slips_and_nothing_else() {
+    fn finds_typing_errors_and_nothing_else() {
         let known = ["hall", "terrain", "sphereflake"];
         assert_eq!(closest("hal", &known), Some("hall"));
         assert_eq!(closest("sphere-flake", &known), Some("sphereflake"));

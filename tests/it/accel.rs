@@ -10,7 +10,9 @@ mod thesis;
 use glam::Vec3;
 use proptest::prelude::*;
 use rtbench::scene::Scene;
+use rtbench::workloads::trace::bvh::Bvh;
 use rtbench::workloads::trace::{Selection, Structure};
+use std::sync::Arc;
 
 /// Every builder, with options that lead through other code.
 pub const SELECTIONS: [&str; 22] = [
@@ -38,8 +40,13 @@ pub const SELECTIONS: [&str; 22] = [
     "brute",
 ];
 
-pub fn build(selection: &str, scene: &Scene, threads: usize) -> Structure {
+pub fn build(selection: &str, scene: &Scene, threads: usize) -> Arc<dyn Structure> {
     Selection::parse(selection).unwrap().build(scene, threads).unwrap().structure
+}
+
+/// The same, of a known type.
+pub fn build_as<S: Structure + Clone>(selection: &str, scene: &Scene) -> S {
+    build(selection, scene, 1).downcast_ref::<S>().expect("a structure of this type").clone()
 }
 
 fn assert_valid(selection: &str, scene: &Scene) {
@@ -71,7 +78,7 @@ fn no_bvh_is_deeper_than_the_bound() {
     // Every next triangle is ten times farther away: greedy splits take one triangle off at a time.
     let corners = |i: i32| Vec3::splat(10_f32.powi(i / 8) * (1.0 + 0.1 * (i % 8) as f32));
     let far = scenes::soup("powers of ten", (-240..240).map(|i| [corners(i), corners(i), corners(i)]));
-    let Structure::Bvh(bvh) = build("bvh:max_leaf=1,bins=2", &far, 1) else { unreachable!() };
+    let bvh: Bvh = build_as("bvh:max_leaf=1,bins=2", &far);
     assert!(bvh.depth > 20, "the scene is no challenge: depth {}", bvh.depth);
     assert!(bvh.depth <= rtbench::workloads::trace::bvh::MAX_DEPTH);
 }
@@ -81,9 +88,8 @@ fn no_bvh_is_deeper_than_the_bound() {
 fn a_bvh_s_cost_constants_decide_about_leaves() {
     let scene = scenes::ordinary().pop().unwrap();
     let nodes = |selection: &str| {
-        let built = build(selection, &scene, 1);
-        let Structure::Bvh(bvh) = &built else { unreachable!() };
-        (bvh.nodes.len(), rtbench::workloads::trace::common::sah::CostModel::default().bvh(bvh).unwrap())
+        let bvh: Bvh = build_as(selection, &scene);
+        (bvh.nodes.len(), rtbench::workloads::trace::common::sah::CostModel::default().bvh(&bvh).unwrap())
     };
     let (small, large) = (nodes("bvh:max_leaf=1"), nodes("bvh:max_leaf=15"));
     assert_eq!(nodes("bvh:max_leaf=15,kt=inf,ki=3"), large);
@@ -120,14 +126,10 @@ fn builds_do_not_depend_on_the_number_of_threads() {
 }
 
 /// Everything that a device would be given.
-fn bytes(structure: &Structure) -> Vec<u8> {
-    let nodes: &[u8] = match structure {
-        Structure::Brute(_) => &[],
-        Structure::Grid(s) => bytemuck::cast_slice(&s.cells),
-        Structure::KdTree(s) => bytemuck::cast_slice(&s.nodes),
-        Structure::Bvh(s) => bytemuck::cast_slice(&s.nodes),
-    };
-    [nodes, bytemuck::cast_slice(structure.triangle_refs())].concat()
+fn bytes(structure: &Arc<dyn Structure>) -> Vec<u8> {
+    let (nodes, uniform) = (structure.nodes(), structure.uniform());
+    assert_eq!(nodes.len(), structure.node_bytes());
+    [&*nodes, bytemuck::cast_slice(structure.triangle_refs()), &*uniform].concat()
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Camera paths: files, thinning, fitting, errors.
+//! Tests of camera paths: files, selection of frames, fitting, errors.
 
 use crate::support::file_below;
 use glam::Vec3;
@@ -14,7 +14,7 @@ fn small(name: &str) -> Scene {
     scene::load(&format!("{name}:triangles={}", info.parameters[0].min)).unwrap()
 }
 
-/// A path from a file of this text.
+/// Loads a path file with this text.
 fn from_text(text: &str) -> rtbench::Result<CameraPath> {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("path.toml");
@@ -35,7 +35,7 @@ target = [0, 0, 0]
 ";
 
 #[test]
-fn every_embedded_path_is_sound_and_has_the_thesis_number_of_frames() {
+fn every_embedded_path_is_valid_and_has_400_frames_as_in_the_thesis() {
     for name in names() {
         let path = CameraPath::load(name).unwrap();
         assert_eq!((path.name.as_str(), path.frames), (name, 400));
@@ -51,7 +51,7 @@ fn every_embedded_path_is_sound_and_has_the_thesis_number_of_frames() {
 }
 
 #[test]
-fn every_built_in_scene_finds_its_path() {
+fn every_built_in_scene_has_its_default_path() {
     for info in scene::list() {
         let scene = small(info.name);
         let p = CameraPath::for_scene(&scene, Config::P.shadows());
@@ -66,7 +66,7 @@ fn every_built_in_scene_finds_its_path() {
 }
 
 #[test]
-fn thinning_is_even_and_keeps_the_first_frame() {
+fn selected_frames_are_evenly_spaced_and_include_the_first() {
     let scene = small("scan");
     let path = CameraPath::load("orbit").unwrap();
     let all = path.views(&scene, None).unwrap();
@@ -81,7 +81,8 @@ fn thinning_is_even_and_keeps_the_first_frame() {
     }
 }
 
-/// Largest share of the half image that any vertex reaches; infinite if one lies behind the camera.
+/// The largest distance of a vertex from the centre of the image, in half images; infinite if a vertex is behind the
+/// camera.
 fn reach(scene: &Scene, view: &View) -> f32 {
     let c = &view.camera;
     let right = c.direction.cross(c.up).normalize();
@@ -96,7 +97,7 @@ fn reach(scene: &Scene, view: &View) -> f32 {
 }
 
 #[test]
-fn the_orbit_keeps_its_distance_and_shows_the_whole_object() {
+fn an_orbit_keeps_its_distance_and_the_whole_object_in_view() {
     let path = CameraPath::load("orbit").unwrap();
     let stretched = |x: f32, y: f32, z: f32| {
         let mut scene = small("scan");
@@ -118,9 +119,9 @@ fn the_orbit_keeps_its_distance_and_shows_the_whole_object() {
             assert!(view.camera.direction.dot(to.normalize()) > 0.99999);
             widest = widest.max(reach(&scene, view));
         }
-        // In view from every side, and filling the image from at least one.
+        // The object is in view in all frames, and fills the image in at least one.
         assert!((0.80..=1.0).contains(&widest), "{widest}");
-        // A full turn, evenly: opposite frames stand opposite to each other.
+        // Frames are evenly spaced in a full turn: opposite frames have opposite positions.
         let flat = |i: usize| (views[i].camera.position - center) * Vec3::new(1.0, 0.0, 1.0);
         assert!((flat(0) + flat(200)).length() < 1e-3 * distance);
         assert!((flat(100) + flat(300)).length() < 1e-3 * distance);
@@ -128,7 +129,7 @@ fn the_orbit_keeps_its_distance_and_shows_the_whole_object() {
 }
 
 #[test]
-fn the_light_orbit_keeps_the_camera_and_turns_one_light() {
+fn a_light_orbit_keeps_the_camera_and_turns_one_light() {
     let scene = small("scan");
     let views = CameraPath::load("light-orbit").unwrap().views(&scene, None).unwrap();
     let bounds = scene.bounds();
@@ -144,7 +145,7 @@ fn the_light_orbit_keeps_the_camera_and_turns_one_light() {
 }
 
 #[test]
-fn up_may_be_any_axis() {
+fn any_axis_can_be_up() {
     let scene = small("scan");
     for up in [Vec3::X, Vec3::NEG_Y, Vec3::Z, Vec3::ONE] {
         let text = format!("kind = \"orbit\"\nframes = 8\nup = [{}, {}, {}]\n", up.x, up.y, up.z);
@@ -169,7 +170,7 @@ fn a_walk_passes_through_its_keys_and_follows_the_bounds() {
     let views = from_text(&relative).unwrap().views(&scene, None).unwrap();
     let bounds = scene.bounds();
     assert_eq!(views[0].camera.position, bounds.min + bounds.extent() * Vec3::new(0.0, 0.0, 5.0));
-    // Constant speed where keys lie on a line at even times.
+    // The speed is constant if keys are on a line at equal intervals.
     let line = "kind = \"walk\"\nframes = 31\n".to_owned()
         + &(0..4)
             .map(|i| format!("[[keys]]\ntime = {i}\nposition = [{i}, 0, 0]\ndirection = [0, 0, 1]\n"))
@@ -197,7 +198,7 @@ fn lights_come_from_the_path_or_the_scene_or_the_default() {
     }
 }
 
-/// Between any two frames the camera sees where it goes: no walk passes through a wall or a column.
+/// No ray from a frame's position to the next is blocked: no walk passes through a wall or a column.
 #[test]
 fn walks_keep_out_of_the_geometry() {
     for name in ["terrain", "sphereflake", "stadium", "hall", "room"] {
@@ -210,7 +211,7 @@ fn walks_keep_out_of_the_geometry() {
             let hit = triangles.iter().position(|&corners| intersect(&ray, corners, 1.0).is_some());
             assert_eq!(hit, None, "{name}: from {from} to {to}");
         }
-        // And it looks at something most of the time.
+        // The camera looks at a surface in most frames.
         let sees = |view: &&View| {
             let ray = Ray::new(view.camera.position.into(), view.camera.direction.into());
             triangles.iter().any(|&corners| intersect(&ray, corners, T_MAX).is_some())
@@ -221,7 +222,7 @@ fn walks_keep_out_of_the_geometry() {
 }
 
 #[test]
-fn bad_files_are_refused_with_line_and_mend() {
+fn invalid_files_are_refused_with_line_and_hint() {
     let cases: &[(&str, &str, &[&str])] = &[
         ("\"walk\"", "\"stroll\"", &["path.toml:1: kind \"stroll\" is unknown", "light-orbit"]),
         ("kind = \"walk\"", "", &["missing field `kind`"]),
@@ -242,7 +243,7 @@ fn bad_files_are_refused_with_line_and_mend() {
         ("time = 1", "time = 0", &[":8: time = 0 is not greater"]),
         ("time = 1", "time = nan", &[":8: time = NaN"]),
         ("time = 1\n", "", &["missing field `time`"]),
-        ("position = [5, 0, 0]", "position = [0, 0, 0]", &[":10: the camera stands on its target"]),
+        ("position = [5, 0, 0]", "position = [0, 0, 0]", &[":10: the camera's position is its target"]),
         (
             "position = [5, 0, 0]",
             "position = [0, 7, 0]",
@@ -253,8 +254,8 @@ fn bad_files_are_refused_with_line_and_mend() {
         ("target = [0, 0, 0]", "target = [0, 0, 0]\ndirection = [0, 0, 1]", &[":3: a key needs either"]),
         ("target = [0, 0, 0]", "direction = [0, 0, 0]", &[":6: direction is zero"]),
         ("target = [0, 0, 0]", "direction = [0, -2, 0]", &[":6: the camera looks along its up vector"]),
-        (&WALK[WALK.rfind("[[keys]]").unwrap_or(0)..], "", &["two keys or more, here are 1"]),
-        (&WALK[WALK.find("[[keys]]").unwrap_or(0)..], "", &["two keys or more, here are 0"]),
+        (&WALK[WALK.rfind("[[keys]]").unwrap_or(0)..], "", &["two keys or more, but there are 1"]),
+        (&WALK[WALK.find("[[keys]]").unwrap_or(0)..], "", &["two keys or more, but there are 0"]),
         ("[[keys]]", "[[lights]]\nposition = [0, 0, 0]\ncolour = [-1, 0, 0]\n[[keys]]", &[":5: colour is negative"]),
     ];
     for (from, to, words) in cases {
@@ -270,9 +271,9 @@ fn bad_files_are_refused_with_line_and_mend() {
 }
 
 #[test]
-fn what_only_shows_in_a_scene_is_refused_there() {
+fn errors_that_depend_on_the_scene_are_reported_for_the_scene() {
     let scene = small("scan");
-    // The interpolated direction turns through zero and through up.
+    // The interpolated direction passes through zero and through the up vector.
     let turn = "kind = \"walk\"\nframes = 3\n[[keys]]\ntime = 0\nposition = [0, 0, 5]\ndirection = [0, 0, 1]\n\
         [[keys]]\ntime = 1\nposition = [0, 0, 5]\ndirection = [0, 0, -1]\n";
     let message = from_text(turn).unwrap().views(&scene, None).unwrap_err().to_string();
@@ -288,7 +289,7 @@ fn what_only_shows_in_a_scene_is_refused_there() {
     assert!(message.contains("looks along its up vector"), "{message}");
 }
 
-/// A scene with a camera of its own, which turns a little.
+/// A scene with a camera in its file, which turns slightly.
 fn filmed(frames: usize) -> Scene {
     let mut random = crate::support::random(7);
     let frames = (0..frames)
@@ -302,7 +303,7 @@ fn filmed(frames: usize) -> Scene {
 }
 
 #[test]
-fn a_scene_with_a_camera_of_its_own_is_seen_through_it() {
+fn the_camera_of_the_scene_file_is_the_default_path() {
     let scene = filmed(30);
     let poses = &scene.camera.as_ref().unwrap().frames;
     for config in Config::ALL {
@@ -326,7 +327,7 @@ fn a_scene_with_a_camera_of_its_own_is_seen_through_it() {
     let moved = Scene { camera: filmed(31).camera, ..filmed(30) };
     let hash = |scene: &Scene| CameraPath::for_scene(scene, Config::P.shadows()).content_hash();
     assert_ne!(hash(&scene), hash(&moved));
-    // A camera that stands still has one frame to show, however many are wanted
+    // A static camera gives one frame for any number of requested frames.
     let still = filmed(1);
     let path = CameraPath::for_scene(&still, Config::PSR.shadows());
     for frames in [None, Some(1), Some(20)] {
@@ -334,9 +335,9 @@ fn a_scene_with_a_camera_of_its_own_is_seen_through_it() {
     }
 }
 
-/// What is advised where a path has too few frames can be done: only a file of the user's own can be given more.
+/// The hint for a path with too few frames is feasible: only a path file of the user can be given more.
 #[test]
-fn more_frames_than_there_are() {
+fn more_frames_than_the_path_has_are_refused() {
     let scene = filmed(30);
     let refused = |path: CameraPath| path.views(&scene, Some(401)).unwrap_err().to_string();
     let poses = "kind = \"frames\"\nposes = [[0, 0, 0, 9, 0, 0, -1, 0, 1, 0], [1, 0, 0, 8, 0, 0, -1, 0, 1, 0]]\n";
@@ -358,7 +359,7 @@ fn more_frames_than_there_are() {
 }
 
 #[test]
-fn an_exported_path_shows_the_same_views_to_the_bit() {
+fn an_exported_path_gives_the_same_views_to_the_bit() {
     let scene = filmed(200);
     let with_lights = format!(
         "{WALK}[[lights]]\nposition = [0.3, 1, 0.7]\nrelative = true\n[[lights]]\nposition = [1, 2, 3]\ncolour = [0.1, 0, 1]\n"
@@ -385,10 +386,14 @@ fn an_exported_path_shows_the_same_views_to_the_bit() {
 }
 
 #[test]
-fn recorded_frames_are_refused_with_line_and_mend() {
+fn invalid_recorded_frames_are_refused_with_line_and_hint() {
     let whole = "kind = \"frames\"\nfield_of_view = 45\nposes = [\n  [0, 0, 0, 5, 0, 0, -2, 0, 1, 0],\n  [1, 0, 0, 4, 0, 0, -1, 0, 1, 0],\n]\n";
     let views = from_text(whole).unwrap().views(&small("scan"), None).unwrap();
-    assert_eq!((views.len(), views[0].camera.direction), (2, Vec3::NEG_Z), "a direction of another length");
+    assert_eq!(
+        (views.len(), views[0].camera.direction),
+        (2, Vec3::NEG_Z),
+        "a direction that is not a unit vector is normalised"
+    );
     for (from, to, words) in [
         ("  [1, 0, 0, 4,", "  [1, 0, 0, nan,", &[":5: time or position is not finite"][..]),
         ("  [1, 0, 0, 4,", "  [inf, 0, 0, 4,", &[":5: time or position"]),
@@ -411,17 +416,17 @@ fn recorded_frames_are_refused_with_line_and_mend() {
     }
 }
 
-/// BART's cameras against values computed with the benchmark's own code.
+/// Compares BART's cameras with values computed by the benchmark's own code.
 #[test]
-fn the_cameras_of_the_real_scenes_are_the_references() {
+fn the_cameras_of_the_real_scenes_equal_the_references() {
     let variable = if std::env::var_os("RTBENCH_REFERENCE").is_some() { "RTBENCH_REFERENCE" } else { "RTBENCH_SCENES" };
-    let beside = if variable == "RTBENCH_SCENES" { "../reference/" } else { "" };
+    let folder = if variable == "RTBENCH_SCENES" { "../reference/" } else { "" };
     for (scene, reference, frames) in [
         ("bart/museum/museum6-derived.aff", "bart_museum_camera.csv", 300),
         ("bart/robots/Robot.aff", "bart_robots_camera.csv", 800),
     ] {
         let Some(scene) = file_below("RTBENCH_SCENES", scene) else { return };
-        let Some(reference) = file_below(variable, &format!("{beside}{reference}")) else { return };
+        let Some(reference) = file_below(variable, &format!("{folder}{reference}")) else { return };
         let scene = rtbench::scene::load(scene.to_str().unwrap()).unwrap();
         let recorded = CameraPath::for_scene(&scene, Config::PSR.shadows()).poses(&scene, None).unwrap();
         assert_eq!(recorded.frames.len(), frames);
@@ -442,7 +447,7 @@ fn the_cameras_of_the_real_scenes_are_the_references() {
 }
 
 #[test]
-fn the_program_exports_the_path_of_a_file_at_a_time() {
+fn the_program_exports_the_camera_path_of_a_file() {
     let folder = tempfile::tempdir().unwrap();
     let file = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let keys = "transl 4 0 0 0 9 0 0 0 1 0 0 9 0 0 0 2 1 0 9 0 0 0 3 1 0 9 0 0 0";

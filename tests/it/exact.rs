@@ -1,5 +1,5 @@
-//! The ray/triangle test against exact arithmetic, which shares no code with it: every float is an integer times 2^-149,
-//! so that intersections are quotients of integers.
+//! The ray/triangle test against exact arithmetic, which shares no code with it: every float is an integer times
+//! 2^-149, so that intersections are quotients of integers.
 
 use crate::meshes::{Aim, aimed, icosphere, lattice, room};
 use crate::support::random;

@@ -1,51 +1,47 @@
-//! Records with known content, and a device that can be told to break.
+//! Records with known content, and a workload whose tracers break on demand.
 
 use rtbench::camera::View;
+use rtbench::device::{DeviceInfo, DeviceType, FrameTime, Interrupted};
 use rtbench::harness::environment;
 use rtbench::math::Hit;
-use rtbench::record::schema::{
-    ConfigurationRecord, CounterSums, Environment, Memory, PlanRecord, Provenance, SCHEMA, Samples, SceneRecord,
-    Status, StructureRecord, TimingSource,
+use rtbench::record::row::{SCHEMA, Samples, Settings, Status, TimingSource};
+use rtbench::record::run::{DeviceRecord, Environment, PlanRecord, Provenance};
+use rtbench::workloads::trace::backend::{Config, CountedPixel, GivenRay, Pixel, Prepared, Size, Timed};
+use rtbench::workloads::trace::record::{
+    ConfigurationRecord, CounterSums, Memory, SceneRecord, StructureRecord, WORKLOAD,
 };
-use rtbench::scene::Scene;
-use rtbench::workloads::trace::CpuBackend;
-use rtbench::workloads::trace::backend::{
-    Backend, Config, CountedPixel, DeviceInfo, DeviceType, FrameTime, GivenRay, Interrupted, Pixel, Prepared, Size,
-    Timed,
-};
-use rtbench::workloads::trace::{Method, Structure, Traversal};
+use rtbench::workloads::trace::{Selection, Trace};
 use rtbench::{Error, Result};
-use std::cell::{Cell, RefCell};
-use std::rc::Rc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
 
 pub fn provenance() -> Provenance {
+    let info = DeviceInfo {
+        name: "llvmpipe (LLVM 15.0.6, 256 bits)".into(),
+        device_type: DeviceType::SoftwareRasteriser,
+        backend: "vulkan".into(),
+        driver: "Mesa 25.0.7".into(),
+        timestamp_period_ns: Some(1.0),
+        checked: false,
+        features: vec!["TIMESTAMP_QUERY".into()],
+        limits: [("max_buffer_size".to_owned(), u64::MAX)].into(),
+        threads: Some(2),
+    };
     Provenance {
         schema: SCHEMA.into(),
+        id: "0123456789abcdef".into(),
+        workload: WORKLOAD.into(),
         program: environment::program(),
         started: "2026-01-02T03:04:05Z".into(),
         arguments: vec!["rtbench".into(), "sweep".into(), "--out=\"a b\"".into()],
-        device: DeviceInfo {
-            name: "llvmpipe (LLVM 15.0.6, 256 bits)".into(),
-            device_type: DeviceType::SoftwareRasteriser,
-            backend: "vulkan".into(),
-            driver: "Mesa 25.0.7".into(),
-            timestamp_period_ns: Some(1.0),
-            checked: false,
-            features: vec!["TIMESTAMP_QUERY".into()],
-            limits: [("max_buffer_size".to_owned(), u64::MAX)].into(),
-            threads: Some(2),
-        },
-        device_reason: "the only Vulkan adapter".into(),
+        devices: vec![DeviceRecord { info, reason: "the only Vulkan adapter".into() }],
         environment: Environment { load_average: [0.1, 0.2, 0.3], ..Environment::default() },
         plan: PlanRecord {
             preset: "quick".into(),
-            scenes: vec!["scan".into()],
-            structures: vec!["grid (default)".into()],
-            configurations: 2,
-            passes: 2,
-            warmup_frames: 1,
-            builds: 1,
-            skipped: vec![],
+            axes: [("scene".to_owned(), vec!["scan".to_owned()])].into(),
+            rows: 2,
+            settings: Settings { passes: 2, warmup_frames: 1, builds: 1, threads: 0 },
+            absent: vec![],
         },
     }
 }
@@ -68,7 +64,7 @@ pub fn structure(name: &str) -> StructureRecord {
     record
 }
 
-/// Two passes over two frames: 2 and 4 ms by the device's clock, 2.2 and 4.4 by the wall's.
+/// Two passes over two frames: 2 and 4 ms by the device's clock, 2.2 and 4.4 by the host's.
 pub fn configuration(name: &str, config: Config) -> ConfigurationRecord {
     let ms = |a: f64, b: f64| vec![(a * 1e6) as u64, (b * 1e6) as u64];
     ConfigurationRecord {
@@ -95,12 +91,23 @@ pub fn configuration(name: &str, config: Config) -> ConfigurationRecord {
             device_ns: Some(vec![ms(2.0, 4.0), ms(2.0, 4.0)]),
             wall_ns: vec![ms(2.2, 4.4), ms(2.2, 4.4)],
             pass_ns: vec![7_000_000, 7_000_000],
+            ..Samples::default()
         }),
         ..ConfigurationRecord::new(config)
     }
 }
 
-/// What a device does wrong.
+/// A step of measuring a case.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Step {
+    Prepare,
+    Verify,
+    Count,
+    Pass,
+    Recheck,
+}
+
+/// What a tracer does wrong.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fault {
     /// Nothing.
@@ -111,86 +118,73 @@ pub enum Fault {
     CountingDiffers,
     /// One pixel of the last timed frame names another triangle.
     TimedDiffers,
-    /// Preparing fails: too large.
-    NoRoom,
+    /// A step is refused: too large.
+    TooLarge(Step),
+    /// A step is refused: no such function.
+    Unsupported(Step),
+    /// The device reports an error in a step.
+    Device(Step),
     /// Preparing fails while anything else is prepared.
     NoRoomBeside,
-    /// Lost while timing PS, once.
+    /// The device is lost while timing PS, once.
     LostOnce,
 }
 
-/// The CPU twins, with a fault wherever `traversal` is walked.
-pub struct Faulty {
-    inner: CpuBackend,
-    info: DeviceInfo,
-    fault: Fault,
-    traversal: Traversal,
-    spent: Rc<Cell<bool>>,
-    /// What is prepared at the moment.
-    prepared: Cell<usize>,
-    /// Every path that was timed: the traversal, and the number of frames.
-    timed: Rc<RefCell<Vec<(Traversal, usize)>>>,
-}
-
-impl Faulty {
-    pub fn new(fault: Fault, traversal: Traversal, spent: Rc<Cell<bool>>) -> Faulty {
-        let inner = CpuBackend::new(1).unwrap();
-        let info = inner.info().clone();
-        Faulty { inner, info, fault, traversal, spent, prepared: Cell::new(0), timed: Rc::default() }
-    }
-
-    /// Writes down what is timed.
-    pub fn watched(mut self, timed: Rc<RefCell<Vec<(Traversal, usize)>>>) -> Faulty {
-        self.timed = timed;
-        self
-    }
-
-    /// Under another name.
-    pub fn named(mut self, name: &str) -> Faulty {
-        self.info.name = name.into();
-        self
-    }
-}
-
-impl Backend for Faulty {
-    fn info(&self) -> &DeviceInfo {
-        &self.info
-    }
-
-    fn prepare<'a>(
-        &'a self,
-        scene: &'a Scene,
-        structure: &'a Structure,
-        method: Method,
-    ) -> Result<Box<dyn Prepared + 'a>> {
-        let fault = if method.traversal == self.traversal { self.fault } else { Fault::None };
-        if fault == Fault::NoRoom {
-            return Err(Error::Device("the structure needs 5 GiB, the device has 1 GiB".into()));
+impl Fault {
+    fn check(self, step: Step) -> Result<()> {
+        match self {
+            Fault::TooLarge(at) if at == step => {
+                Err(Error::too_large("the structure", "5 GiB are needed, the device has 1 GiB", "use a smaller scene"))
+            }
+            Fault::Unsupported(at) if at == step => Err(Error::unsupported("no such feature")),
+            Fault::Device(at) if at == step => Err(Error::Device("the driver says no".into())),
+            _ => Ok(()),
         }
-        if fault == Fault::NoRoomBeside && self.prepared.get() > 0 {
-            return Err(Error::Device("out of memory".into()));
-        }
-        let inner = self.inner.prepare(scene, structure, method)?;
-        self.prepared.set(self.prepared.get() + 1);
-        Ok(Box::new(FaultyPrepared { inner, fault, traversal: method.traversal, device: self }))
     }
 }
 
-struct FaultyPrepared<'a> {
+/// What faults share and tests look at.
+#[derive(Default)]
+pub struct Seen {
+    /// The device has been lost.
+    pub spent: AtomicBool,
+    /// Number of tracers at the moment.
+    prepared: AtomicUsize,
+    /// Every path that was timed: the structure, and the number of frames.
+    pub timed: Mutex<Vec<(String, usize)>>,
+}
+
+/// Ray tracing with a fault wherever the structure called `structure` is used.
+pub fn faulty(fault: Fault, structure: &'static str, seen: Arc<Seen>) -> Trace {
+    Trace {
+        decorate: Some(Box::new(move |inner, selection: &Selection| {
+            let fault = if selection.name() == structure { fault } else { Fault::None };
+            fault.check(Step::Prepare)?;
+            if fault == Fault::NoRoomBeside && seen.prepared.load(Ordering::Relaxed) > 0 {
+                return Err(Error::Device("out of memory".into()));
+            }
+            seen.prepared.fetch_add(1, Ordering::Relaxed);
+            Ok(Box::new(Faulty { inner, fault, structure: selection.name(), seen: seen.clone() }))
+        })),
+    }
+}
+
+struct Faulty<'a> {
     inner: Box<dyn Prepared + 'a>,
     fault: Fault,
-    traversal: Traversal,
-    device: &'a Faulty,
+    structure: &'static str,
+    seen: Arc<Seen>,
 }
 
-impl Drop for FaultyPrepared<'_> {
+impl Drop for Faulty<'_> {
     fn drop(&mut self) {
-        self.device.prepared.set(self.device.prepared.get() - 1);
+        self.seen.prepared.fetch_sub(1, Ordering::Relaxed);
     }
 }
 
-impl Prepared for FaultyPrepared<'_> {
+impl Prepared for Faulty<'_> {
     fn image(&mut self, config: Config, view: &View, size: Size) -> Result<Vec<Pixel>> {
+        self.fault.check(Step::Verify)?;
         let mut pixels = self.inner.image(config, view, size)?;
         if self.fault == Fault::WrongTriangle {
             let middle = pixels.len() / 2;
@@ -206,6 +200,7 @@ impl Prepared for FaultyPrepared<'_> {
         size: Size,
         band: &mut dyn FnMut(u32, &[CountedPixel]),
     ) -> Result<()> {
+        self.fault.check(Step::Count)?;
         let differs = self.fault == Fault::CountingDiffers;
         self.inner.counted(config, view, size, &mut |row, pixels| {
             let mut pixels = pixels.to_vec();
@@ -223,14 +218,16 @@ impl Prepared for FaultyPrepared<'_> {
         size: Size,
         interrupted: Interrupted,
     ) -> Result<Vec<FrameTime>> {
-        if self.fault == Fault::LostOnce && config == Config::PS && !self.device.spent.replace(true) {
+        self.fault.check(Step::Pass)?;
+        if self.fault == Fault::LostOnce && config == Config::PS && !self.seen.spent.swap(true, Ordering::Relaxed) {
             return Err(Error::DeviceLost("the driver\nreset".into()));
         }
-        self.device.timed.borrow_mut().push((self.traversal, views.len()));
+        self.seen.timed.lock().unwrap().push((self.structure.to_owned(), views.len()));
         self.inner.time_path(config, views, size, interrupted)
     }
 
     fn timed(&mut self) -> Result<Timed> {
+        self.fault.check(Step::Recheck)?;
         let mut timed = self.inner.timed()?;
         if self.fault == Fault::TimedDiffers {
             timed.pixels[5].triangle ^= 1;

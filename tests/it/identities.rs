@@ -1,4 +1,5 @@
-//! Identities that do not depend on comments: of kernels (`gpu::tokens` has its own tests) and of the readers' sources.
+//! Identities that do not depend on comments: of kernels (`device::tokens` has its own tests) and of the readers'
+//! sources.
 
 use rtbench::workloads::trace::Selection;
 use rtbench::workloads::trace::backend::Config;

@@ -2,15 +2,22 @@
 //! sides. Needs no GPU.
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
+use rtbench::device::Source;
 use rtbench::math::Vertex;
 use rtbench::scene::{Light, Material};
 use rtbench::workloads::trace::backend::{Config, CountedPixel, Counters, Pixel};
-use rtbench::workloads::trace::gpu::kernels::{self, Entry, Kernel, Source};
-use rtbench::workloads::trace::gpu::{FrameUniform, StructureUniform, TraceRay};
+use rtbench::workloads::trace::brute::BruteUniform;
+use rtbench::workloads::trace::gpu::kernels::{self, Entry, Kernel};
+use rtbench::workloads::trace::gpu::{FrameUniform, TraceRay};
+use rtbench::workloads::trace::grid::GridUniform;
 use rtbench::workloads::trace::grid::octants::Octant;
-use rtbench::workloads::trace::method::{KdSearch, Vote};
-use rtbench::workloads::trace::{Selection, Traversal, variants};
+use rtbench::workloads::trace::kdtree::KdTreeUniform;
+use rtbench::workloads::trace::{Method, Selection, algorithms};
 use std::mem::offset_of;
+
+fn method(structure: &str) -> Method {
+    Selection::parse(structure).unwrap().method()
+}
 
 fn assemble(kernel: &Kernel) -> Source {
     kernel.assemble().unwrap_or_else(|problem| panic!("{}: {problem}", kernel.label()))
@@ -37,9 +44,28 @@ fn every_variant_is_valid() {
         kernels::methods().len() * 8 * 4,
         "six render and two trace entries, two kinds of driver, buffers and textures"
     );
-    for variant in variants() {
-        let method = Selection::parse(variant.name).unwrap().method();
-        assert!(kernels.iter().any(|kernel| kernel.method == method), "{} is not checked", variant.name);
+    for algorithm in algorithms() {
+        let method = method(algorithm.name);
+        assert!(kernels.iter().any(|kernel| kernel.method == method), "{} is not checked", algorithm.name);
+    }
+    let special = [
+        "kdtree:memory=private",
+        "kdtree:search=pushdown",
+        "kdtree:search=restart",
+        "kdtree:stack=1",
+        "kdtree:stack=32",
+        "bvh:vote=original",
+        "bvh:packet=4x4",
+        "grid-coop:packet=8x4",
+        "grid-packet:packet=8x4",
+        "bvh-stack:shadows=to-light",
+        "bvh-stack:intersect=moller-trumbore",
+        "bvh-stack:pattern=four",
+        "bvh-stack:group=64x1",
+        "bvh-stack:group=16x16",
+    ];
+    for text in special {
+        assert!(kernels.iter().any(|kernel| kernel.method == method(text)), "{text} is not checked");
     }
     for kernel in kernels {
         if let Err(problem) = check(&assemble(&kernel)) {
@@ -52,7 +78,7 @@ fn every_variant_is_valid() {
 fn a_broken_kernel_is_located() {
     let kernel = Kernel {
         entry: Entry::Render { config: Config::P, counting: false },
-        method: Traversal::Bvh(Vote::Corrected).into(),
+        method: method("bvh"),
         stack_size: 32,
         software_threads: 2,
         textures: false,
@@ -95,17 +121,17 @@ macro_rules! same_layout {
 
 #[test]
 fn struct_layouts_agree() {
-    let render = |traversal: Traversal, counting| {
+    let render = |structure: &str, counting| {
         let kernel = Kernel {
             entry: Entry::Render { config: Config::PSR, counting },
-            method: traversal.into(),
+            method: method(structure),
             stack_size: 32,
             software_threads: 0,
             textures: false,
         };
         check(&assemble(&kernel)).unwrap()
     };
-    let module = &render(Traversal::Grid, true);
+    let module = &render("grid", true);
     same_layout!(
         module,
         "Frame",
@@ -129,12 +155,7 @@ fn struct_layouts_agree() {
             shadow_reach
         ]
     );
-    same_layout!(
-        module,
-        "Structure",
-        StructureUniform,
-        [bounds_min, cell_size, bounds_max, triangle_refs, resolution, octants]
-    );
+    same_layout!(module, "Grid", GridUniform, [bounds_min, cell_size, bounds_max, resolution, octants]);
     same_layout!(module, "Octant", Octant, [step, end]);
     same_layout!(module, "Vertex", Vertex, [position, normal]);
     same_layout!(module, "Material", Material, [ambient, reflectivity, diffuse, exponent, specular]);
@@ -144,7 +165,7 @@ fn struct_layouts_agree() {
     assert_eq!(span as usize, size_of::<CountedPixel>());
     assert_eq!(members.iter().find(|m| m.0 == "t").unwrap().1 as usize, offset_of!(CountedPixel, t));
     assert_eq!(members.iter().find(|m| m.0 == "counters").unwrap().1 as usize, offset_of!(CountedPixel, counters));
-    let module = &render(Traversal::BvhStack, false);
+    let module = &render("bvh-stack", false);
     same_layout!(module, "Pixel", Pixel, [triangle, rgba]);
     let (span, members) = layout(module, "Node");
     assert_eq!(span as usize, size_of::<rtbench::workloads::trace::bvh::BvhNode>());
@@ -156,11 +177,13 @@ fn struct_layouts_agree() {
     );
     let kernel = Kernel {
         entry: Entry::Trace { any_hit: false },
-        method: Traversal::KdTree(KdSearch::THESIS).into(),
+        method: method("kdtree"),
         stack_size: 8,
         software_threads: 0,
         textures: false,
     };
     let module = &check(&assemble(&kernel)).unwrap();
     same_layout!(module, "GivenRay", TraceRay, [origin, direction]);
+    same_layout!(module, "KdTree", KdTreeUniform, [bounds_min, bounds_max]);
+    same_layout!(&render("brute", false), "Brute", BruteUniform, [triangle_refs]);
 }

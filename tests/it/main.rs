@@ -1,20 +1,25 @@
 //! All integration tests, in one crate so that they link once.
 
 mod accel; // builders x degenerate inputs, validation, memory model, determinism
-mod architecture; // who may use whom, and where wgpu, clocks and output may stand
+mod architecture; // who may use whom, and which files may use wgpu, clocks and output
 mod camera; // camera paths: files, thinning, fitting, errors
 mod cli; // the program as a user runs it: outputs, exit codes, broken input
+mod compare; // pairs, judgements and statistics against known answers
+mod device; // frames of several passes, indirect dispatch, textures, features
 mod exact; // the ray/triangle test against exact arithmetic
 mod fakes; // records with known content, a device that breaks on demand
 mod identities; // hashes of kernels and readers do not depend on comments
 mod kernels; // every kernel variant through naga, struct layouts, no GPU
+mod language; // comments and documents are at most 120 columns wide
 mod meshes; // closed meshes, and rays at their vertices and edges
 mod reference; // rays traced by Embree (needs RTBENCH_SCENES)
+mod report; // tables of any source in every format, parts of documents
 mod results; // journal, CSV and JSON agree; statistics; rays and hits
 mod scene; // readers and what breaks them, memory while loading, caches, procedural scenes, the catalogue
+mod sources; // published numbers; tables, claims, figures and report from records
 mod support; // small scenes, random numbers, the GPU if there is one
 mod sweep; // the sweep loop on a device that breaks, presets, the plan
-mod thesis; // the thesis's numbers, and tables, claims, figures and report from records
+mod toy; // a workload of a few lines on the harness
 mod traversal; // every traversal against brute force, CPU twins and GPU
 mod verify; // the verifier notices one wrong pixel
 mod watertight; // no ray is lost at edges, on lattices, from afar

@@ -1,5 +1,5 @@
 //! Rays traced by Embree 4, held against every structure on the CPU and on the GPU. Needs RTBENCH_SCENES (the scenes)
-//! and RTBENCH_REFERENCE (the rays; by default `../reference` beside the scenes); triangle indices are by fan
+//! and RTBENCH_REFERENCE (the rays; by default `../reference` from the scenes); triangle indices are by fan
 //! triangulation in file order.
 
 use crate::support::{file_below, gpu};
@@ -8,7 +8,7 @@ use rtbench::math::{Hit, MISS};
 use rtbench::scene::{self, Scene};
 use rtbench::workloads::trace::CpuBackend;
 use rtbench::workloads::trace::backend::{Backend, GivenRay};
-use rtbench::workloads::trace::{Selection, variants};
+use rtbench::workloads::trace::{Selection, algorithms};
 use std::path::Path;
 
 fn read_rays(path: &Path) -> (Vec<GivenRay>, Vec<Hit>) {
@@ -58,7 +58,7 @@ fn agree(scene_file: &str, rays_file: &str) {
     );
     let cpu = CpuBackend::new(0).unwrap();
     let backends = [Some(&cpu as &dyn Backend), gpu().map(|gpu| gpu as &dyn Backend)];
-    for variant in variants() {
+    for variant in algorithms() {
         let selection = Selection::parse(variant.name).unwrap();
         let built = selection.build(&scene, 0).unwrap();
         for backend in backends.into_iter().flatten() {
@@ -67,7 +67,7 @@ fn agree(scene_file: &str, rays_file: &str) {
             let step = if variant.name == "brute" { 16 } else { 1 };
             let rays: Vec<_> = rays.iter().copied().step_by(step).collect();
             let expected: Vec<_> = expected.iter().copied().step_by(step).collect();
-            let mut prepared = backend.prepare(&scene, &built.structure, selection.method()).unwrap();
+            let mut prepared = backend.prepare(&scene, &*built.structure, selection.method()).unwrap();
             let found = prepared.trace(&rays, false).unwrap();
             let off = differing(&scene, &expected, &found);
             assert!(

@@ -1,27 +1,32 @@
 //! Records and what is made of them: statistics by hand, journals whole and cut off, CSV and JSON that agree.
 
 use crate::fakes::{configuration, provenance, structure};
+use crate::support::csv_rows;
 use proptest::prelude::*;
 use rtbench::Error;
 use rtbench::harness::measure;
+use rtbench::harness::summary::{self, Wide};
 use rtbench::math::{Hit, MISS};
+use rtbench::record::journal::Record;
 use rtbench::record::journal::{Journal, JournalWriter};
-use rtbench::record::schema::{CounterSums, End, Record, Samples, Status, TimingSource};
-use rtbench::record::summary::{Row, Run, StructureRow, structures_csv, summary_csv};
+use rtbench::record::row::{SCHEMA, Samples, Status, TimingSource};
+use rtbench::record::run::End;
 use rtbench::record::{files, picture, statistics};
-use rtbench::record::{rays_csv, table};
 use rtbench::workloads::trace::backend::{Config, GivenRay};
+use rtbench::workloads::trace::record::{CounterSums, TraceJournal};
+use rtbench::workloads::trace::{TRACE, artifacts, rays_csv};
 use std::path::{Path, PathBuf};
 
-/// The columns as the issue names them, in its order.
+/// Columns that scripts of users read, in any order.
 const SUMMARY: &str = "device,device_type,scene,triangles,structure,variant,config,width,height,frames,passes,\
     frame_ms_min,frame_ms_max,frame_ms_mean,noise_pct,timing_source,wall_ms_mean,mrays_per_s,primary_rays,shadow_rays,\
     reflected_rays,primary_steps_per_ray,primary_tests_per_ray,primary_restarts_per_ray,shadow_steps_per_ray,\
     shadow_tests_per_ray,shadow_restarts_per_ray,reflected_steps_per_ray,reflected_tests_per_ray,\
-    reflected_restarts_per_ray,build_ms,structure_bytes,geometry_bytes,thesis_bytes,image_hash,verified,status,message";
+    reflected_restarts_per_ray,build_ms,structure_bytes,geometry_bytes,thesis_bytes,image_hash,verified,status,message,\
+    build,traversal,ray_options,device_options,resolution,camera_path,interleaved_with,kernel_hash";
 const STRUCTURES: &str = "scene,structure,variant,cells_x,cells_y,cells_z,max_cell_triangles,references_per_triangle,\
     leaves,empty_leaves,max_leaf_triangles,nodes,depth,sah_cost,build_ms,build_threads,structure_bytes,geometry_bytes,\
-    thesis_bytes";
+    thesis_bytes,triangles,vertices,note";
 
 #[test]
 fn statistics_by_hand() {
@@ -58,17 +63,27 @@ proptest! {
     }
 }
 
-/// A journal with a structure, a good row and an error row, as its writer leaves it.
+/// A structure, a good row and a wrong one.
+fn typed() -> TraceJournal {
+    let mut bad = configuration("kdtree", Config::P);
+    bad.status = Status::Wrong;
+    bad.verified = false;
+    bad.message = "3 hits differ, \"quoted\", with a comma".into();
+    TraceJournal {
+        provenance: provenance(),
+        structures: vec![structure("grid")],
+        configurations: vec![configuration("grid", Config::PS), bad],
+        resumed: vec![],
+        end: None,
+        truncated: None,
+    }
+}
+
+/// Their journal, as its writer leaves it.
 fn written() -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let mut writer = JournalWriter::create(folder.path(), provenance()).unwrap();
-    writer.write(&Record::Structure(Box::new(structure("grid")))).unwrap();
-    writer.write(&Record::Configuration(Box::new(configuration("grid", Config::PS)))).unwrap();
-    let mut bad = configuration("kdtree", Config::P);
-    bad.status = Status::Error;
-    bad.verified = false;
-    bad.message = "3 hits differ, \"quoted\", with a comma".into();
-    writer.write(&Record::Configuration(Box::new(bad))).unwrap();
+    typed().records().iter().for_each(|record| writer.write(record).unwrap());
     let path = writer.path().to_owned();
     (folder, path)
 }
@@ -78,13 +93,19 @@ fn journal_round_trip() {
     let (folder, path) = written();
     let journal = Journal::read(&path).unwrap();
     assert_eq!(journal.provenance, provenance());
-    assert_eq!(journal.structures, [structure("grid")]);
-    assert_eq!(journal.configurations.len(), 2);
-    assert_eq!(journal.configurations[0], configuration("grid", Config::PS));
-    assert_eq!((journal.end, journal.truncated), (None, None));
+    assert_eq!((journal.inputs.len(), journal.artifacts.len(), journal.rows.len()), (2, 1, 2));
+    assert_eq!((&journal.end, &journal.truncated), (&None, &None));
+    // Nothing is lost between the typed rows and the general schema
+    assert_eq!(TraceJournal::new(&journal), typed());
     let text = std::fs::read_to_string(&path).unwrap();
     let first: serde_json::Value = serde_json::from_str(text.lines().next().unwrap()).unwrap();
-    assert_eq!((first["record"].as_str(), first["schema"].as_str()), (Some("run"), Some("rtbench/1")));
+    assert_eq!((first["record"].as_str(), first["schema"].as_str()), (Some("run"), Some(SCHEMA)));
+    // Integers stay integers, also beyond what a float holds
+    let mut row = journal.rows[0].clone();
+    row.metrics = vec![rtbench::record::row::Metric::new("large", u64::MAX)];
+    let text = serde_json::to_string(&row).unwrap();
+    assert!(text.contains("18446744073709551615"), "{text}");
+    assert_eq!(serde_json::from_str::<rtbench::record::row::Row>(&text).unwrap(), row);
     // The folder is taken now.
     let again = JournalWriter::create(folder.path(), provenance()).err().unwrap();
     assert!(matches!(again, Error::Input(_)) && again.to_string().contains("not empty"), "{again}");
@@ -104,7 +125,8 @@ fn journal_cut_off_anywhere() {
         let journal = read.unwrap_or_else(|e| panic!("cut off at {length}: {e}"));
         // A line that only lacks its newline is whole.
         let whole = ends.iter().filter(|&&end| end <= length).count();
-        assert_eq!(1 + journal.structures.len() + journal.configurations.len(), whole, "{length}");
+        let records = journal.inputs.len() + journal.artifacts.len() + journal.rows.len();
+        assert_eq!(1 + records, whole, "{length}");
         let clean = length == ends[whole - 1] || length == ends[whole - 1] + 1;
         assert_eq!(journal.truncated.is_none(), clean, "{length}");
     }
@@ -122,7 +144,7 @@ fn broken_journals_are_refused_with_their_line() {
     refused(&[lines[0], "rubbish", lines[2]], "j:2: not a record");
     refused(&[lines[1], lines[2]], "j:1: the first line is no run's provenance");
     refused(&[lines[0], lines[0]], "j:2: a second provenance");
-    refused(&[&lines[0].replace("rtbench/1", "rtbench/9")], "j:1: schema \"rtbench/9\"");
+    refused(&[&lines[0].replace(SCHEMA, "rtbench/9")], "j:1: schema \"rtbench/9\"");
     assert!(Journal::parse(Path::new("j"), b"").unwrap_err().to_string().contains("empty"));
     assert!(Journal::read(Path::new("/nowhere/j")).unwrap_err().to_string().contains("/nowhere/j"));
 }
@@ -139,65 +161,81 @@ fn a_device_node_is_never_replaced() {
 }
 
 #[test]
-fn headers_are_the_issue_s() {
+fn headers_keep_their_columns() {
+    let (_folder, path) = written();
+    let mut journal = Journal::read(&path).unwrap();
     let header = |csv: Vec<u8>| String::from_utf8(csv).unwrap().lines().next().unwrap().to_owned();
-    let device = provenance().device;
-    let rows = [Row::new(&device, &configuration("bvh", Config::PSR))];
     // With rows and without.
-    for header in [header(summary_csv(&rows).unwrap()), header(summary_csv(&[]).unwrap())] {
-        assert!(header.starts_with(&format!("{SUMMARY},")), "{header}");
+    for rows in [true, false] {
+        if !rows {
+            (journal.rows, journal.artifacts) = (vec![], vec![]);
+        }
+        let header_of_summary = header(Wide::new(&TRACE, &journal).csv().unwrap());
+        let columns: Vec<&str> = header_of_summary.split(',').collect();
+        for column in SUMMARY.split(',') {
+            assert_eq!(columns.iter().filter(|known| **known == column).count(), 1, "{column}: {header_of_summary}");
+        }
+        assert_eq!(header(artifacts::csv(&artifacts::rows(&journal)).unwrap()), STRUCTURES);
     }
-    let rows = [StructureRow::new(&structure("grid"))];
-    for header in [header(structures_csv(&rows).unwrap()), header(structures_csv(&[]).unwrap())] {
-        assert!(header.starts_with(&format!("{STRUCTURES},")), "{header}");
-    }
-    assert_eq!(structures_csv(&[]).unwrap().iter().filter(|&&b| b == b'\n').count(), 1);
 }
 
 #[test]
 fn csv_json_and_journal_agree() {
     let (folder, path) = written();
     let journal = Journal::read(&path).unwrap();
-    let run = Run::new(&journal);
-    run.write(folder.path()).unwrap();
-    let mut csv = csv::Reader::from_path(folder.path().join("summary.csv")).unwrap();
-    let rows: Vec<Row> = csv.deserialize().collect::<Result<_, _>>().unwrap();
+    summary::write(&TRACE, &journal, folder.path()).unwrap();
+    let rows = csv_rows(&folder.path().join("summary.csv"));
     let text = std::fs::read_to_string(folder.path().join("run.json")).unwrap();
-    let json: Run = serde_json::from_str(&text).unwrap();
-    assert_eq!(rows, json.configurations);
-    assert_eq!(json, run);
-    let mut csv = csv::Reader::from_path(folder.path().join("structures.csv")).unwrap();
-    let structures: Vec<StructureRow> = csv.deserialize().collect::<Result<_, _>>().unwrap();
-    assert_eq!(structures, json.structures);
+    let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(json["rows"][0]["primary_rays"], 100);
+    assert_eq!(json["rows"].as_array().unwrap().len(), rows.len());
+    assert_eq!(json["artifacts"].as_array().unwrap().len(), 1);
+    assert_eq!(csv_rows(&folder.path().join("structures.csv"))[0]["cells_x"], "3");
     // Derived twice from the same journal: the same bytes.
-    Run::new(&Journal::read(&path).unwrap()).write(folder.path()).unwrap();
+    summary::write(&TRACE, &Journal::read(&path).unwrap(), folder.path()).unwrap();
     assert_eq!(std::fs::read_to_string(folder.path().join("run.json")).unwrap(), text);
 
-    // By hand, see `support::configuration`: frames of 2 and 4 ms by the device's clock, 100 + 50 rays.
-    let good = &rows[0];
-    assert_eq!((good.frame_ms_min, good.frame_ms_max, good.frame_ms_mean), (Some(2.0), Some(4.0), Some(3.0)));
-    assert_eq!((good.wall_ms_mean, good.timing_source), (Some(3.3), Some(TimingSource::Device)));
-    assert_eq!(good.mrays_per_s, Some(0.025)); // 150 rays in 6 ms
-    assert_eq!((good.primary_rays, good.shadow_rays, good.reflected_rays), (Some(100), Some(50), Some(0)));
-    assert_eq!((good.primary_steps_per_ray, good.shadow_tests_per_ray), (Some(7.5), Some(2.0)));
-    assert_eq!(good.reflected_steps_per_ray, None);
-    // An error row has no time, even though the record beneath it still holds samples here.
-    let bad = &rows[1];
-    assert!(journal.configurations[1].samples.is_some());
-    assert_eq!((bad.frame_ms_mean, bad.wall_ms_mean, bad.mrays_per_s, bad.timing_source), (None, None, None, None));
-    assert_eq!((bad.status, bad.verified), (Status::Error, false));
-    assert_eq!(bad.message, "3 hits differ, \"quoted\", with a comma");
+    // By hand, see `fakes::configuration`: frames of 2 and 4 ms by the device's clock, 100 + 50 rays.
+    let good = |column: &str| rows[0][column].as_str();
+    assert_eq!([good("frame_ms_min"), good("frame_ms_max"), good("frame_ms_mean")], ["2", "4", "3"]);
+    assert_eq!([good("wall_ms_mean"), good("timing_source")], ["3.3", "device"]);
+    assert_eq!(good("mrays_per_s"), "0.025"); // 150 rays in 6 ms
+    assert_eq!([good("primary_rays"), good("shadow_rays"), good("reflected_rays")], ["100", "50", "0"]);
+    assert_eq!([good("primary_steps_per_ray"), good("shadow_tests_per_ray")], ["7.5", "2"]);
+    assert_eq!([good("reflected_steps_per_ray"), good("variant"), good("triangles")], ["", "default", "12"]);
+    // A row without a result has no time, even though the record beneath it still holds samples here.
+    let bad = |column: &str| rows[1][column].as_str();
+    assert!(journal.rows[1].samples.is_some());
+    for column in ["frame_ms_mean", "wall_ms_mean", "mrays_per_s", "timing_source", "pass_overhead"] {
+        assert_eq!(bad(column), "", "{column}");
+    }
+    assert_eq!([bad("status"), bad("verified")], ["wrong", "false"]);
+    assert_eq!(bad("message"), "3 hits differ, \"quoted\", with a comma");
 }
 
 #[test]
 fn tables_say_what_the_device_is_good_for() {
     let (_folder, path) = written();
-    let mut run = Run::new(&Journal::read(&path).unwrap());
-    let text = table::run(&run);
+    let mut journal = Journal::read(&path).unwrap();
+    let text = summary::terminal(&TRACE, &journal);
     assert!(text.contains("software rasteriser") && text.contains("do not rank structures for a GPU"), "{text}");
-    assert!(text.contains("ERROR") && text.contains("3 hits differ"), "{text}");
-    run.run.device.device_type = rtbench::workloads::trace::backend::DeviceType::DiscreteGpu;
-    assert!(!table::run(&run).contains("do not rank"));
+    assert!(text.contains("WRONG") && text.contains("3 hits differ"), "{text}");
+    journal.provenance.devices[0].info.device_type = rtbench::device::DeviceType::DiscreteGpu;
+    assert!(!summary::terminal(&TRACE, &journal).contains("do not rank"));
+}
+
+/// A frame of several stages has a time per stage, and a column for each.
+#[test]
+fn stages_are_columns() {
+    let (_folder, path) = written();
+    let mut journal = Journal::read(&path).unwrap();
+    journal.rows.truncate(1);
+    let samples = journal.rows[0].samples.as_mut().unwrap();
+    samples.stages = vec!["emit".into(), "prefix-sum".into()];
+    samples.stage_ns = Some(vec![vec![vec![1_000_000, 500_000], vec![3_000_000, 500_000]]; 2]);
+    let wide = Wide::new(&TRACE, &journal);
+    let value = |column: &str| wide.rows[0][wide.column(column).unwrap()].clone().unwrap().number().unwrap();
+    assert_eq!((value("emit_ms_mean"), value("prefix_sum_ms_mean"), value("frame_ms_mean")), (2.0, 0.5, 3.0));
 }
 
 #[test]
@@ -206,6 +244,7 @@ fn the_clock_is_chosen_by_what_it_says() {
         pass_ns: vec![wall.iter().sum()],
         device_ns: device.map(|d| vec![d]),
         wall_ns: vec![wall],
+        ..Samples::default()
     };
     let choose = |device, wall| measure::choose_source(&samples(device, wall));
     assert_eq!(choose(Some(vec![100, 100]), vec![105, 105]), (TimingSource::Device, vec![]));
@@ -219,7 +258,7 @@ fn the_clock_is_chosen_by_what_it_says() {
         assert!(warnings[0].contains("zero or run backwards"), "{warnings:?}");
     }
     let slow =
-        Samples { device_ns: None, wall_ns: vec![vec![200], vec![100], vec![101]], pass_ns: vec![200, 100, 101] };
+        Samples { wall_ns: vec![vec![200], vec![100], vec![101]], pass_ns: vec![200, 100, 101], ..Samples::default() };
     assert!(measure::choose_source(&slow).1[0].contains("first pass"));
 }
 
@@ -263,7 +302,7 @@ fn rays_and_hits_as_csv() {
 }
 
 proptest! {
-    /// Whatever is in the file, reading it ends in rays or in one line.
+    /// Reading any file ends in rays or in one line of error.
     #[test]
     fn any_bytes_as_rays(bytes in prop::collection::vec(any::<u8>(), 0..200), with_header in any::<bool>()) {
         let folder = tempfile::tempdir().unwrap();

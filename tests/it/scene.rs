@@ -1,4 +1,4 @@
-//! Scenes: readers, built-in scenes, loading by name.
+//! Tests of scenes: readers, built-in scenes, loading by name.
 
 mod aff;
 mod broken_aff;
@@ -24,7 +24,7 @@ use rtbench::scene::{self, Scene};
 use rtbench::{Error, Result};
 use std::path::PathBuf;
 
-/// The folder of real scenes, or a line on stderr that says that and why the test did not run.
+/// The folder of real scenes. Without one, prints that the test did not run.
 fn real_scenes(test: &str) -> Option<PathBuf> {
     let folder = std::env::var_os("RTBENCH_SCENES").filter(|folder| !folder.is_empty()).map(PathBuf::from);
     if folder.is_none() {
@@ -33,7 +33,7 @@ fn real_scenes(test: &str) -> Option<PathBuf> {
     folder
 }
 
-/// Files of a scene, in a folder of their own inside another, until this is dropped.
+/// Files of a scene in a temporary folder inside another one, which is removed when this is dropped.
 struct Files {
     folder: tempfile::TempDir,
 }
@@ -58,13 +58,13 @@ impl Files {
         std::fs::write(self.path(name), bytes).unwrap();
     }
 
-    /// Loads one of them; options may follow its name.
-    fn load(&self, what: &str) -> Result<Scene> {
-        scene::load(self.path(what).to_str().unwrap())
+    /// Loads one of the files; options may follow its name.
+    fn load(&self, spec: &str) -> Result<Scene> {
+        scene::load(self.path(spec).to_str().unwrap())
     }
 }
 
-/// Loads a scene of which these are the file's bytes.
+/// Loads a PLY file with these bytes.
 fn load_bytes(bytes: &[u8]) -> Result<Scene> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("mesh.ply");
@@ -72,7 +72,7 @@ fn load_bytes(bytes: &[u8]) -> Result<Scene> {
     scene::load(path.to_str().unwrap())
 }
 
-/// The message of a refused scene; one line.
+/// The message of a refused scene; asserts that it is one line.
 fn refusal(result: Result<Scene>) -> String {
     let error = result.expect_err("must be refused");
     assert!(matches!(error, Error::Input(_)), "{error:?}");
@@ -82,8 +82,8 @@ fn refusal(result: Result<Scene>) -> String {
 }
 
 #[test]
-fn names_that_are_neither_file_nor_scene_are_refused_with_a_mend() {
-    for (what, words) in [
+fn unknown_names_are_refused_with_a_hint() {
+    for (spec, words) in [
         ("hal", &["did you mean hall?", "sphereflake"][..]),
         ("cathedral", &["no scene is called", "terrain", "dragon"]),
         ("kitchen", &["no folder of scenes is given", "RTBENCH_SCENES", "kitchen.aff", "BART"]),
@@ -99,15 +99,15 @@ fn names_that_are_neither_file_nor_scene_are_refused_with_a_mend() {
         ("hall:triangles=99999999999999999999999999", &["not a whole number"]),
         ("", &["no scene is called"]),
     ] {
-        let message = refusal(scene::load(what));
+        let message = refusal(scene::load(spec));
         for word in words {
-            assert!(message.contains(word), "{what}: {message}");
+            assert!(message.contains(word), "{spec}: {message}");
         }
     }
 }
 
 #[test]
-fn files_of_unknown_kind_and_folders_are_refused() {
+fn files_of_unknown_format_and_folders_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let text = folder.path().join("mesh.txt");
     std::fs::write(&text, "ply\n").unwrap();
@@ -119,7 +119,7 @@ fn files_of_unknown_kind_and_folders_are_refused() {
 }
 
 #[test]
-fn check_sees_every_broken_invariant() {
+fn check_detects_every_violated_invariant() {
     let sound = load_bytes(ply::CUBE.as_bytes()).unwrap();
     sound.check().unwrap();
     type Break = fn(&mut Scene);
@@ -143,7 +143,7 @@ fn check_sees_every_broken_invariant() {
 }
 
 #[test]
-fn the_content_hash_sees_every_part_and_no_name() {
+fn the_content_hash_depends_on_every_part_and_not_on_the_name() {
     let scene = scene::load("hall:triangles=15000").unwrap();
     let hash = scene.content_hash();
     assert_eq!(hash.len(), 64);
@@ -164,7 +164,7 @@ fn the_content_hash_sees_every_part_and_no_name() {
 }
 
 #[test]
-fn a_file_takes_options_behind_its_name() {
+fn options_may_follow_the_name_of_a_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("cube.ply");
     std::fs::write(&path, ply::CUBE).unwrap();
@@ -184,7 +184,7 @@ fn a_file_takes_options_behind_its_name() {
     }
     for (settings, words) in [
         ("tim=3", "did you mean time?"),
-        ("time=soon", "`soon` does not do"),
+        ("time=soon", "the value `soon` is not valid"),
         ("segments=2", "3 to 1024"),
         ("up=x", "y or z"),
         ("scale=-1", "positive"),

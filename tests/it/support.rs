@@ -1,9 +1,10 @@
 //! What several modules need: small scenes, random numbers, the GPU if there is one, files of others.
 
 use glam::Vec3;
+use rtbench::device::VulkanDevice;
+use rtbench::device::vulkan::{Selector, VulkanOptions, adapters, choose};
 use rtbench::math::Vertex;
 use rtbench::scene::{Light, Material, Scene, Triangle};
-use rtbench::workloads::trace::gpu::{GpuBackend, GpuOptions, Selector};
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
@@ -51,8 +52,8 @@ pub fn soup(triangles: usize, seed: u32, flat: bool) -> Scene {
     scene
 }
 
-fn open(options: GpuOptions) -> Option<GpuBackend> {
-    match GpuBackend::open(&Selector::Best, options) {
+fn open(options: VulkanOptions) -> Option<VulkanDevice> {
+    match choose(&adapters(), &Selector::Best).and_then(|best| VulkanDevice::open(best, options)) {
         Ok(gpu) => Some(gpu),
         // .ci/run sets RTBENCH_REQUIRE_GPU, so that a missing driver cannot pass for a passed test
         Err(error) if std::env::var_os("RTBENCH_REQUIRE_GPU").is_none() => {
@@ -65,9 +66,9 @@ fn open(options: GpuOptions) -> Option<GpuBackend> {
 
 /// The best Vulkan device, one for all tests so that kernels are compiled once; without one, says so and returns
 /// nothing.
-pub fn gpu() -> Option<&'static GpuBackend> {
-    static GPU: OnceLock<Option<GpuBackend>> = OnceLock::new();
-    let gpu = GPU.get_or_init(|| open(GpuOptions::default())).as_ref();
+pub fn gpu() -> Option<&'static VulkanDevice> {
+    static GPU: OnceLock<Option<VulkanDevice>> = OnceLock::new();
+    let gpu = GPU.get_or_init(|| open(VulkanOptions::default())).as_ref();
     if gpu.is_none() {
         eprintln!("not run: needs a Vulkan device");
     }
@@ -75,8 +76,8 @@ pub fn gpu() -> Option<&'static GpuBackend> {
 }
 
 /// A device of one's own, with or without wgpu's shader checks.
-pub fn own_gpu(checked: bool) -> Option<GpuBackend> {
-    open(GpuOptions { checked, ..GpuOptions::default() })
+pub fn own_gpu(checked: bool) -> Option<VulkanDevice> {
+    open(VulkanOptions { checked, ..VulkanOptions::default() })
 }
 
 /// A file below the folder named by an environment variable; without it, says so and returns nothing.
@@ -93,4 +94,9 @@ pub fn file_below(variable: &str, path: &str) -> Option<PathBuf> {
 /// A file of `tests/data`.
 pub fn data(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
+}
+
+/// The rows of a CSV file by column.
+pub fn csv_rows(path: &std::path::Path) -> Vec<std::collections::BTreeMap<String, String>> {
+    csv::Reader::from_path(path).unwrap().deserialize().collect::<Result<_, _>>().unwrap()
 }

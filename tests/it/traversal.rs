@@ -5,14 +5,14 @@ use crate::support::{gpu, random, soup};
 use glam::Vec3;
 use proptest::prelude::*;
 use rtbench::camera::{Camera, View};
-use rtbench::harness::verify::COUNTER_SHARE;
 use rtbench::math::{Hit, MISS};
 use rtbench::scene::{Light, Material, Scene};
 use rtbench::workloads::trace::CpuBackend;
 use rtbench::workloads::trace::backend::{
     Backend, Config, CountedPixel, DeviceInfo, DeviceType, GivenRay, Pixel, Size,
 };
-use rtbench::workloads::trace::{Selection, variants};
+use rtbench::workloads::trace::verify::COUNTER_SHARE;
+use rtbench::workloads::trace::{Selection, algorithms};
 
 /// Rays of every character around a box from -1 to 1.
 fn rays(count: usize, seed: u32) -> Vec<GivenRay> {
@@ -42,19 +42,20 @@ fn rays(count: usize, seed: u32) -> Vec<GivenRay> {
 pub fn trace(backend: &dyn Backend, scene: &Scene, selection: &str, rays: &[GivenRay], any_hit: bool) -> Vec<Hit> {
     let selection = Selection::parse(selection).unwrap();
     let built = selection.build(scene, 1).unwrap();
-    backend.prepare(scene, &built.structure, selection.method()).unwrap().trace(rays, any_hit).unwrap()
+    backend.prepare(scene, &*built.structure, selection.method()).unwrap().trace(rays, any_hit).unwrap()
 }
 
-/// How many of `of` may differ: none where the device computes to the bit. Elsewhere (a GPU may contract and approximate)
-/// rounding decides about rays in the planes of triangles, of which there are many here.
+/// How many of `of` may differ: none where the device computes to the bit. Elsewhere (a GPU may contract and
+/// approximate) rounding decides about rays in the planes of triangles, of which there are many here.
 fn allowed(device: &DeviceInfo, of: usize) -> usize {
-    if device.is_exact() { 0 } else { (of as f64 * COUNTER_SHARE) as usize }
+    if device.agrees_with_twins() { 0 } else { (of as f64 * COUNTER_SHARE) as usize }
 }
 
 pub fn assert_same(device: &DeviceInfo, name: &str, rays: &[GivenRay], expected: &[Hit], found: &[Hit]) {
     assert_eq!(expected.len(), found.len());
     let near = |a: f32, b: f32| {
-        a.to_bits() == b.to_bits() || (!device.is_exact() && (a - b).abs() <= 1e-5 * a.abs().max(b.abs()).max(1.0))
+        a.to_bits() == b.to_bits()
+            || (!device.agrees_with_twins() && (a - b).abs() <= 1e-5 * a.abs().max(b.abs()).max(1.0))
     };
     let same = |a: &Hit, b: &Hit| a.triangle == b.triangle && near(a.t, b.t);
     let wrong: Vec<usize> = (0..rays.len()).filter(|&index| !same(&expected[index], &found[index])).collect();
@@ -76,7 +77,7 @@ fn assert_equal<T: PartialEq + std::fmt::Debug>(device: &DeviceInfo, what: &str,
 }
 
 fn names() -> Vec<&'static str> {
-    variants().iter().map(|v| v.name).collect()
+    algorithms().iter().map(|v| v.name).collect()
 }
 
 /// Ways to walk a structure other than each one's own.
@@ -194,7 +195,7 @@ fn counted(
 ) -> (Vec<CountedPixel>, Vec<Pixel>) {
     let selection = Selection::parse(name).unwrap();
     let built = selection.build(scene, 1).unwrap();
-    let mut prepared = backend.prepare(scene, &built.structure, selection.method()).unwrap();
+    let mut prepared = backend.prepare(scene, &*built.structure, selection.method()).unwrap();
     let mut pixels = Vec::new();
     prepared.counted(config, &view(3), size, &mut |_, band| pixels.extend_from_slice(band)).unwrap();
     let timed = prepared.image(config, &view(3), size).unwrap();
@@ -230,7 +231,7 @@ fn timed_and_counting_twins_make_the_same_picture() {
 #[test]
 fn gpu_counts_what_its_twin_counts() {
     let Some(gpu) = gpu() else { return };
-    if !gpu.info().is_exact() {
+    if !gpu.info().agrees_with_twins() {
         eprintln!("not run: {} is not compared to the bit", gpu.info().name);
         return;
     }
@@ -250,7 +251,10 @@ fn gpu_counts_what_its_twin_counts() {
                     assert_eq!(kernel.counters, twin.counters, "{place}");
                     let channels = kernel.pixel.rgba.to_le_bytes().into_iter().zip(twin.pixel.rgba.to_le_bytes());
                     let worst = channels.map(|(a, b)| a.abs_diff(b)).max().unwrap();
-                    assert!(worst <= rtbench::harness::verify::COLOUR_LEVELS, "{place}: colours differ by {worst}");
+                    assert!(
+                        worst <= rtbench::workloads::trace::verify::COLOUR_LEVELS,
+                        "{place}: colours differ by {worst}"
+                    );
                 }
             }
         }
@@ -278,7 +282,7 @@ fn other_rays_are_the_same_for_all() {
                 let place = format!("{name}:{option} on {}", device.backend);
                 let triangles = |pixels: &[CountedPixel]| pixels.iter().map(|p| p.pixel.triangle).collect::<Vec<_>>();
                 assert_equal(device, &place, &triangles(&reference), &triangles(&pixels));
-                if device.is_exact() {
+                if device.agrees_with_twins() {
                     let bits = |pixels: &[CountedPixel]| pixels.iter().map(|p| p.t).collect::<Vec<_>>();
                     let counters = |pixels: &[CountedPixel]| pixels.iter().map(|p| p.counters).collect::<Vec<_>>();
                     assert_equal(device, &place, &bits(&reference), &bits(&pixels));
@@ -350,7 +354,7 @@ fn a_lost_device_is_an_error() {
     let scene = soup(50, 15, false);
     let selection = Selection::parse("bvh-stack").unwrap();
     let built = selection.build(&scene, 1).unwrap();
-    let mut prepared = gpu.prepare(&scene, &built.structure, selection.method()).unwrap();
+    let mut prepared = gpu.prepare(&scene, &*built.structure, selection.method()).unwrap();
     prepared.image(Config::P, &view(1), SIZE).unwrap();
     gpu.destroy();
     let lost = |error: rtbench::Error| assert!(matches!(error, rtbench::Error::DeviceLost(_)), "{error:?}");
@@ -359,7 +363,7 @@ fn a_lost_device_is_an_error() {
     lost(prepared.counted(Config::P, &view(1), SIZE, &mut |_, _| ()).unwrap_err());
     drop(prepared);
     let again = crate::support::own_gpu(false).expect("the device opens again");
-    again.prepare(&scene, &built.structure, selection.method()).unwrap().image(Config::P, &view(1), SIZE).unwrap();
+    again.prepare(&scene, &*built.structure, selection.method()).unwrap().image(Config::P, &view(1), SIZE).unwrap();
 }
 
 /// The clock: as many times as frames, device times where there are timestamps, and an interrupt is noticed.
@@ -371,7 +375,7 @@ fn paths_are_timed_frame_by_frame() {
     let cpu = CpuBackend::new(1).unwrap();
     let backends = [Some(&cpu as &dyn Backend), gpu().map(|gpu| gpu as &dyn Backend)];
     for backend in backends.into_iter().flatten() {
-        let mut prepared = backend.prepare(&scene, &built.structure, selection.method()).unwrap();
+        let mut prepared = backend.prepare(&scene, &*built.structure, selection.method()).unwrap();
         let times = prepared.time_path(Config::P, &vec![view(1); 5], SIZE, &|| false).unwrap();
         assert_eq!(times.len(), 5);
         assert!(times.iter().all(|t| t.wall_ns > 0));

@@ -5,12 +5,13 @@ use crate::support::soup;
 use glam::Vec3;
 use rtbench::camera::{Camera, View};
 use rtbench::error::Result;
-use rtbench::harness::verify::{COLOUR_LEVELS, Verdict, Verifier};
 use rtbench::math::{Hit, MISS};
 use rtbench::scene::Scene;
 use rtbench::workloads::trace::CpuBackend;
 use rtbench::workloads::trace::backend::*;
-use rtbench::workloads::trace::{Selection, Structure};
+use rtbench::workloads::trace::verify::{COLOUR_LEVELS, Verdict, Verifier};
+use rtbench::workloads::trace::{Built, Selection, bvh::Bvh};
+use std::sync::Arc;
 
 const SIZE: Size = Size { width: 40, height: 24 };
 
@@ -71,10 +72,10 @@ fn judge(exact: bool, timed: &dyn Fn(&mut Vec<Pixel>), counting: &dyn Fn(&mut Ve
     let built = selection.build(&scene, 1).unwrap();
     let tree = Selection::parse("bvh").unwrap().build(&scene, 1).unwrap();
     let cpu = CpuBackend::new(1).unwrap();
-    let inner = cpu.prepare(&scene, &built.structure, selection.method()).unwrap();
+    let inner = cpu.prepare(&scene, &*built.structure, selection.method()).unwrap();
     let mut spoiled = Spoiled { inner, timed, counting };
-    let mut verifier = Verifier::new(&scene, &tree.structure).unwrap();
-    let twin = Some(&built.structure);
+    let mut verifier = Verifier::new(Arc::new(scene.clone()), Arc::new(tree)).unwrap();
+    let twin = Some(&*built.structure);
     verifier.check(&mut spoiled, selection.method(), twin, (Config::PS, &view(&scene), SIZE), exact).unwrap()
 }
 
@@ -191,9 +192,9 @@ fn one_lost_hit_is_noticed_on_any_device() {
     let cpu = CpuBackend::new(1).unwrap();
     let check = |selection: &str, spoil: &dyn Fn(&mut Vec<Pixel>)| {
         let method = Selection::parse(selection).unwrap().method();
-        let inner = cpu.prepare(&scene, &built.structure, method).unwrap();
+        let inner = cpu.prepare(&scene, &*built.structure, method).unwrap();
         let mut spoiled = Spoiled { inner, timed: spoil, counting: &also };
-        let mut verifier = Verifier::new(&scene, &built.structure).unwrap();
+        let mut verifier = Verifier::new(Arc::new(scene.clone()), Arc::new(built.clone())).unwrap();
         verifier.check(&mut spoiled, method, None, (Config::P, &view, SIZE), false).unwrap()
     };
     let lose = |pixels: &mut Vec<Pixel>| pixels[100].triangle = MISS;
@@ -219,13 +220,13 @@ fn a_miss_at_a_silhouette_is_no_lost_hit() {
     let cpu = CpuBackend::new(1).unwrap();
     let method = Selection::parse("bvh-stack").unwrap().method();
     let check = |pixel: usize| {
-        let inner = cpu.prepare(&scene, &built.structure, method).unwrap();
+        let inner = cpu.prepare(&scene, &*built.structure, method).unwrap();
         let lose = move |pixels: &mut Vec<Pixel>| {
             assert_ne!(pixels[pixel].triangle, MISS, "the pixel hits nothing to begin with");
             pixels[pixel].triangle = MISS;
         };
         let mut spoiled = Spoiled { inner, timed: &lose, counting: &also };
-        let mut verifier = Verifier::new(&scene, &built.structure).unwrap();
+        let mut verifier = Verifier::new(Arc::new(scene.clone()), Arc::new(built.clone())).unwrap();
         verifier.check(&mut spoiled, method, None, (Config::P, &view, size), false).unwrap()
     };
     let at_edge = check(20 * 41 + 20);
@@ -237,9 +238,9 @@ fn a_miss_at_a_silhouette_is_no_lost_hit() {
 #[test]
 fn a_wrong_reference_is_noticed() {
     let scene = soup(200, 22, false);
-    let mut tree = Selection::parse("bvh").unwrap().build(&scene, 1).unwrap().structure;
-    let Structure::Bvh(bvh) = &mut tree else { unreachable!() };
-    for triangle_ref in &mut bvh.triangle_refs {
+    let built = Selection::parse("bvh").unwrap().build(&scene, 1).unwrap();
+    let mut tree = built.structure.downcast_ref::<Bvh>().unwrap().clone();
+    for triangle_ref in &mut tree.triangle_refs {
         if triangle_ref.triangle % 7 == 0 {
             triangle_ref.vertices = [0, 0, 0];
         }
@@ -247,7 +248,8 @@ fn a_wrong_reference_is_noticed() {
     let cpu = CpuBackend::new(1).unwrap();
     let selection = Selection::parse("bvh-stack").unwrap();
     let mut prepared = cpu.prepare(&scene, &tree, selection.method()).unwrap();
-    let mut verifier = Verifier::new(&scene, &tree).unwrap();
+    let mut verifier =
+        Verifier::new(Arc::new(scene.clone()), Arc::new(Built { structure: Arc::new(tree.clone()), ..built })).unwrap();
     let verdict =
         verifier.check(prepared.as_mut(), selection.method(), None, (Config::P, &view(&scene), SIZE), true).unwrap();
     assert!(!verdict.ok && verdict.message.contains("brute force"), "{}", verdict.message);

@@ -100,7 +100,7 @@ fn moller_and_trumbore_lose_rays() {
 }
 
 fn given(name: &str) -> Vec<GivenRay> {
-    rtbench::record::rays_csv::read(&data(&format!("rays/{name}"))).unwrap()
+    rtbench::workloads::trace::rays_csv::read(&data(&format!("rays/{name}"))).unwrap()
 }
 
 fn loaded(name: &str) -> Scene {
@@ -218,7 +218,7 @@ fn kernels_and_twins_agree_to_the_bit_at_edges() {
 fn image(backend: &dyn Backend, scene: &Scene, structure: &str, config: Config, view: &View, size: Size) -> Vec<Pixel> {
     let selection = Selection::parse(structure).unwrap();
     let built = selection.build(scene, 1).unwrap();
-    backend.prepare(scene, &built.structure, selection.method()).unwrap().image(config, view, size).unwrap()
+    backend.prepare(scene, &*built.structure, selection.method()).unwrap().image(config, view, size).unwrap()
 }
 
 /// A view along an axis from the middle of a scene.

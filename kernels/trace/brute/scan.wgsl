@@ -2,32 +2,26 @@
 
 //!include lib/independent.wgsl
 
-// Two loops, because software drivers end a single one after 65,535 turns (lavapipe), taking it for endless.
+struct Brute {
+    triangle_refs: u32,
+    pad0: u32,
+    pad1: u32,
+    pad2: u32,
+}
+
+@group(0) @binding(7) var<uniform> brute: Brute;
+
+// Software drivers end a loop after 65,535 turns (lavapipe), taking it for endless.
 const RUN: u32 = 32768u;
 
-fn nearest_hit(ray: Ray, alive: bool) -> u32 {
-    var best = no_best();
+fn traverse(ray: Ray, limit: f32, any: bool, alive: bool) -> u32 {
+    var best = Best(limit, MISS);
     if (alive) {
-        for (var first = 0u; first < structure.triangle_refs; first += RUN) {
-            for (var i = first; i < min(first + RUN, structure.triangle_refs); i += 1u) {
-                count_test();
-                test_triangle(ray, i, &best);
+        for (var first = 0u; first < brute.triangle_refs; first += RUN) {
+            if (test_triangles(ray, first, min(RUN, brute.triangle_refs - first), any, &best)) {
+                break;
             }
         }
     }
     return best.triangle_ref;
-}
-
-fn any_hit(ray: Ray, limit: f32, alive: bool) -> bool {
-    if (alive) {
-        for (var first = 0u; first < structure.triangle_refs; first += RUN) {
-            for (var i = first; i < min(first + RUN, structure.triangle_refs); i += 1u) {
-                count_test();
-                if (triangle_occludes(ray, i, limit)) {
-                    return true;
-                }
-            }
-        }
-    }
-    return false;
 }

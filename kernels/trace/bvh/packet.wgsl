@@ -1,6 +1,6 @@
 // BVH walked by a packet: the 64 rays of a work-group share one stack and visit the same nodes (Günther et al. 2007),
-// with the thesis's corrected vote: a ray that wants neither child has none (with ORIGINAL_VOTE it has one, by which
-// box begins first on its line). Twin: src/workloads/trace/bvh/packet.rs.
+// with the thesis's corrected vote: a ray that hits neither child does not vote (with ORIGINAL_VOTE it votes for the
+// box that begins first on its line). Twin: src/workloads/trace/bvh/packet.rs.
 //
 // All invocations, at most 64, stay until the packet is done; rays that are not alive take part in the barriers only.
 
@@ -12,23 +12,23 @@ var<workgroup> stack_depth: u32;
 var<workgroup> next: vec2<u32>; // node to visit, and 1 if it came from the stack
 var<workgroup> tally: atomic<u32>;
 
-// The wishes of all rays in one sum: how many want only the left child, only the right one, both (7 bits each, at most
-// 64), and from bit 21 the votes, each +1 too high so that none is negative.
+// The votes of all rays are added up in one word: how many rays hit only the left child, only the right one, both (7
+// bits each, at most 64), and from bit 21 which one to visit first: 0 for left, 2 for right, 1 for none.
 const LEFT_ONE: u32 = 1u;
 const RIGHT_ONE: u32 = 1u << 7u;
 const BOTH_ONE: u32 = 1u << 14u;
 const VOTE_SHIFT: u32 = 21u;
 const NO_VOTE: u32 = 1u << VOTE_SHIFT;
 
-fn wish(l: vec2<f32>, r: vec2<f32>, go_left: bool, go_right: bool) -> u32 {
-    if (go_left && go_right) {
+fn child_vote(l: vec2<f32>, r: vec2<f32>, hit_left: bool, hit_right: bool) -> u32 {
+    if (hit_left && hit_right) {
         // Right first: +1. Left first: -1. Equally near: 0, which goes left.
         return BOTH_ONE | (u32(1 + i32(r.x < l.x) - i32(l.x < r.x)) << VOTE_SHIFT);
     }
-    if (go_left) {
+    if (hit_left) {
         return LEFT_ONE;
     }
-    if (go_right) {
+    if (hit_right) {
         return RIGHT_ONE | (2u << VOTE_SHIFT);
     }
     if (ORIGINAL_VOTE) {
@@ -37,27 +37,27 @@ fn wish(l: vec2<f32>, r: vec2<f32>, go_left: bool, go_right: bool) -> u32 {
     return NO_VOTE;
 }
 
-// Done by invocation 0 only: what the packet visits next, by the sum of wishes.
+// Chooses what the packet visits next, by the sum of votes. Called by invocation 0 only.
 fn choose(left: u32, right: u32) {
     let sum = atomicExchange(&tally, 0u);
-    let wants_left = (sum & 127u) != 0u;
-    let wants_right = ((sum >> 7u) & 127u) != 0u;
-    let wants_both = ((sum >> 14u) & 127u) != 0u;
-    if (wants_both || (wants_left && wants_right)) {
+    let any_left = (sum & 127u) != 0u;
+    let any_right = ((sum >> 7u) & 127u) != 0u;
+    let any_both = ((sum >> 14u) & 127u) != 0u;
+    if (any_both || (any_left && any_right)) {
         let right_first = (sum >> VOTE_SHIFT) > GROUP_SIZE;
         stack[stack_depth] = select(right, left, right_first);
         stack_depth += 1u;
         next = vec2<u32>(select(left, right, right_first), 0u);
-    } else if (wants_left) {
+    } else if (any_left) {
         next = vec2<u32>(left, 0u);
-    } else if (wants_right) {
+    } else if (any_right) {
         next = vec2<u32>(right, 0u);
     } else {
         pop();
     }
 }
 
-// Done by invocation 0 only.
+// Takes the next node from the stack. Called by invocation 0 only.
 fn pop() {
     next = vec2<u32>(EMPTY, 0u);
     if (stack_depth > 0u) {
@@ -75,8 +75,8 @@ fn start_packet() -> u32 {
     return workgroupUniformLoad(&next).x;
 }
 
-// Both children's boxes against this ray, the wishes added up, and the packet's next node. Reached by the whole
-// work-group; the answer is uniform.
+// Tests both children's boxes against this ray, adds up the votes, and returns the packet's next node. Reached by the
+// whole work-group; the answer is uniform.
 fn visit_inner(ray: Ray, node: u32, t: f32, alive: bool) -> u32 {
     if (alive) {
         count_inner();
@@ -85,7 +85,7 @@ fn visit_inner(ray: Ray, node: u32, t: f32, alive: bool) -> u32 {
     let right = read_node(node + 1u);
     let l = ray_box(ray, left.lo, left.hi);
     let r = ray_box(ray, right.lo, right.hi);
-    atomicAdd(&tally, select(NO_VOTE, wish(l, r, wanted(l, t), wanted(r, t)), alive));
+    atomicAdd(&tally, select(NO_VOTE, child_vote(l, r, overlaps(l, t), overlaps(r, t)), alive));
     workgroupBarrier();
     if (lane == 0u) {
         choose(left.reference, right.reference);
@@ -108,51 +108,24 @@ fn announce(alive: bool) -> u32 {
     return chosen.x;
 }
 
-fn nearest_hit(ray: Ray, alive: bool) -> u32 {
-    var best = no_best();
-    var node = start_packet();
-    while (node != EMPTY) {
-        if (is_leaf(node)) {
-            if (alive) {
-                count_leaf();
-                let first = leaf_first(node);
-                for (var i = first; i < first + leaf_count(node); i += 1u) {
-                    count_test();
-                    test_triangle(ray, i, &best);
-                }
-            }
-            node = leave_leaf(alive);
-        } else {
-            node = visit_inner(ray, node, best.t, alive);
-        }
-    }
-    return best.triangle_ref;
-}
-
-fn any_hit(ray: Ray, limit: f32, alive: bool) -> bool {
-    var blocked = false;
-    var searching = alive; // a ray that is blocked has no more wishes
+fn traverse(ray: Ray, limit: f32, any: bool, alive: bool) -> u32 {
+    var best = Best(limit, MISS);
+    var searching = alive; // an occluded ray no longer votes
     var node = start_packet();
     while (node != EMPTY) {
         if (is_leaf(node)) {
             if (searching) {
                 count_leaf();
-                let first = leaf_first(node);
-                for (var i = first; i < first + leaf_count(node) && searching; i += 1u) {
-                    count_test();
-                    blocked = triangle_occludes(ray, i, limit);
-                    searching = !blocked;
-                }
+                searching = !test_triangles(ray, leaf_first(node), leaf_count(node), any, &best);
             }
-            // The packet ends as soon as every ray is blocked
-            if (group_any(searching)) {
-                node = leave_leaf(searching);
-            } else {
-                node = EMPTY;
+            // The packet ends as soon as every ray is occluded
+            if (any && !group_any(searching)) {
+                break;
             }
+            node = leave_leaf(searching);
         } else {
-            node = visit_inner(ray, node, limit, searching);
+            node = visit_inner(ray, node, best.t, searching);
         }
     }
-    return blocked;
+    return best.triangle_ref;
 }

@@ -1,6 +1,6 @@
 // BVH, one ray per invocation with a private stack, nearer child first. Twin: src/workloads/trace/bvh/stack.rs.
 //
-// Two loops in turn (Aila and Laine 2009): down to a leaf, then through its triangles. Where several rays share an
+// Two loops alternate (Aila and Laine 2009): down to a leaf, then through its triangles. Where several rays share an
 // instruction stream, none of them pays for both in every step. The stack keeps the distance of each node's box, so
 // that a node that lies beyond a hit found meanwhile is dropped without being read.
 
@@ -19,10 +19,10 @@ fn start_walk(ray: Ray, limit: f32) -> Walk {
     let root = read_node(0u);
     stack[0] = EMPTY;
     stack_t[0] = -1.0;
-    return Walk(select(EMPTY, root.reference, wanted(ray_box(ray, root.lo, root.hi), limit)), 1u);
+    return Walk(select(EMPTY, root.reference, overlaps(ray_box(ray, root.lo, root.hi), limit)), 1u);
 }
 
-// The next node whose box begins before `t`, or EMPTY.
+// Pops the next node whose box begins before `t`, or EMPTY.
 fn pop(t: f32, walk: ptr<function, Walk>) {
     loop {
         (*walk).depth -= 1u;
@@ -36,7 +36,7 @@ fn pop(t: f32, walk: ptr<function, Walk>) {
     (*walk).node = stack[(*walk).depth];
 }
 
-// Go down, nearer child first, until the node is a leaf or nothing is left. Boxes beyond `t` are of no interest.
+// Goes down, nearer child first, to a leaf, or to EMPTY if no box that begins before `t` is left.
 fn walk_to_leaf(ray: Ray, t: f32, walk: ptr<function, Walk>) {
     while (!is_leaf((*walk).node)) {
         count_inner();
@@ -44,62 +44,37 @@ fn walk_to_leaf(ray: Ray, t: f32, walk: ptr<function, Walk>) {
         let right = read_node((*walk).node + 1u);
         let l = ray_box(ray, left.lo, left.hi);
         let r = ray_box(ray, right.lo, right.hi);
-        let go_left = wanted(l, t);
-        let go_right = wanted(r, t);
-        let right_first = !go_left || (go_right && r.x < l.x);
+        let hit_left = overlaps(l, t);
+        let hit_right = overlaps(r, t);
+        let right_first = !hit_left || (hit_right && r.x < l.x);
         (*walk).node = select(left.reference, right.reference, right_first);
-        if (go_left && go_right) {
+        if (hit_left && hit_right) {
             stack[(*walk).depth] = select(right.reference, left.reference, right_first);
             stack_t[(*walk).depth] = max(l.x, r.x);
             (*walk).depth += 1u;
         }
-        if (!go_left && !go_right) {
+        if (!hit_left && !hit_right) {
             pop(t, walk);
         }
     }
 }
 
-fn nearest_hit(ray: Ray, alive: bool) -> u32 {
-    var best = no_best();
+fn traverse(ray: Ray, limit: f32, any: bool, alive: bool) -> u32 {
     if (!alive) {
         return MISS;
     }
-    var walk = start_walk(ray, T_MAX);
+    var best = Best(limit, MISS);
+    var walk = start_walk(ray, limit);
     loop {
         walk_to_leaf(ray, best.t, &walk);
         if (walk.node == EMPTY) {
             break;
         }
         count_leaf();
-        let first = leaf_first(walk.node);
-        for (var i = first; i < first + leaf_count(walk.node); i += 1u) {
-            count_test();
-            test_triangle(ray, i, &best);
+        if (test_triangles(ray, leaf_first(walk.node), leaf_count(walk.node), any, &best)) {
+            break;
         }
         pop(best.t, &walk);
     }
     return best.triangle_ref;
-}
-
-fn any_hit(ray: Ray, limit: f32, alive: bool) -> bool {
-    if (!alive) {
-        return false;
-    }
-    var walk = start_walk(ray, limit);
-    loop {
-        walk_to_leaf(ray, limit, &walk);
-        if (walk.node == EMPTY) {
-            break;
-        }
-        count_leaf();
-        let first = leaf_first(walk.node);
-        for (var i = first; i < first + leaf_count(walk.node); i += 1u) {
-            count_test();
-            if (triangle_occludes(ray, i, limit)) {
-                return true;
-            }
-        }
-        pop(limit, &walk);
-    }
-    return false;
 }

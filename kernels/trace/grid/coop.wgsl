@@ -1,14 +1,15 @@
 // Grid whose work-group shares out the triangle tests of all its rays. Twin: src/workloads/trace/grid/coop.rs.
 //
-// Every ray goes on to its next cell that holds triangles. A running sum of the cells' sizes leaves out the rays that have
-// none and numbers all tests of the group; each invocation does every GROUP_SIZE-th of them, whichever ray it is for. A
-// segmented reduction finds each ray's nearest among the results, and so on until no ray has anything left to test.
+// Every ray goes on to its next cell that holds triangles. A running sum of the cells' sizes leaves out the rays that
+// have none and numbers all tests of the group; each invocation does every GROUP_SIZE-th of them, whichever ray it is
+// for. A segmented reduction finds each ray's nearest among the results, and so on until no ray has anything left to
+// test.
 
 //!include lib/cooperative.wgsl
 //!include trace/grid/walk.wgsl
 
 var<workgroup> group_ray: array<Ray, GROUP_SIZE>;
-var<workgroup> first_record: array<u32, GROUP_SIZE>; // of the ray's cell
+var<workgroup> first_ref: array<u32, GROUP_SIZE>; // of the ray's cell
 var<workgroup> running: array<u32, GROUP_SIZE>;      // tests of this and all earlier rays
 var<workgroup> owner: array<u32, GROUP_SIZE>;        // for which ray invocation i has tested
 var<workgroup> result: array<Found, GROUP_SIZE>;     // and what it has found
@@ -61,7 +62,7 @@ fn do_test(test: u32, ray: u32) -> Found {
     if (ray > 0u) {
         before = running[ray - 1u];
     }
-    let triangle_ref = first_record[ray] + test - before;
+    let triangle_ref = first_ref[ray] + test - before;
     let r = read_triangle_ref(triangle_ref);
     let hit = intersect(group_ray[ray], read_position(r.x), read_position(r.y), read_position(r.z));
     if (hit.t > T_MAX) {
@@ -85,9 +86,9 @@ fn reduce_segments() {
     }
 }
 
-// The nearest hit before `limit`; with `anything`, of the first cell that has one. Reached by the whole work-group.
-fn find(ray: Ray, limit: f32, anything: bool, alive: bool) -> Found {
-    var best = NOTHING;
+// With `any`, all tests of the first cell that has a hit are done. Reached by the whole work-group.
+fn traverse(ray: Ray, limit: f32, any: bool, alive: bool) -> u32 {
+    var best = Found(limit, 0u, MISS); // no index is lower than 0: nothing exactly at the limit is a hit
     var walk = start_walk(ray, limit);
     var searching = alive && walk.inside;
     var leave = false; // the cell has been visited
@@ -96,28 +97,28 @@ fn find(ray: Ray, limit: f32, anything: bool, alive: bool) -> Found {
         // On to the next cell that holds anything
         var tests = 0u;
         loop {
-            var way = INSIDE;
+            var step = INSIDE;
             while (searching && tests == 0u) {
                 if (leave) {
-                    way = go_on(ray, limit, anything, best.t, &walk);
-                    searching = way != OUTSIDE;
+                    step = step_or_stop(ray, limit, any, best.t, &walk);
+                    searching = step != OUTSIDE;
                 }
-                if (way != INSIDE) {
+                if (step != INSIDE) {
                     break;
                 }
                 count_inner();
                 let cell = read_cell(walk.cell);
-                first_record[lane] = cell.x;
+                first_ref[lane] = cell.x;
                 tests = cell.y;
                 leave = true;
             }
-            if (way != TIED) {
+            if (step != TIED) {
                 break;
             }
             searching = cross_borders_to(ray, &walk, &best);
             leave = false;
         }
-        count_tests(tests);
+        add_tests(tests);
         let total = number_tests(tests);
         if (total == 0u) {
             break;
@@ -126,16 +127,16 @@ fn find(ray: Ray, limit: f32, anything: bool, alive: bool) -> Found {
         // All tests of the group, GROUP_SIZE at a time
         for (var first = 0u; first < total; first += GROUP_SIZE) {
             var found = NOTHING;
-            var whose = GROUP_SIZE; // nobody's
+            var ray_of_test = GROUP_SIZE; // no ray's
             if (first + lane < total) {
-                whose = owner_of(first + lane);
-                found = do_test(first + lane, whose);
+                ray_of_test = owner_of(first + lane);
+                found = do_test(first + lane, ray_of_test);
             }
-            owner[lane] = whose;
+            owner[lane] = ray_of_test;
             result[lane] = found;
             workgroupBarrier();
             reduce_segments();
-            // My tests among these begin at
+            // This ray's tests among these begin at
             let begin = max(running[lane] - tests, first);
             if (begin < min(running[lane], first + GROUP_SIZE)) {
                 best = nearer(best, result[begin - first]);
@@ -143,31 +144,23 @@ fn find(ray: Ray, limit: f32, anything: bool, alive: bool) -> Found {
             workgroupBarrier();
         }
     }
-    return best;
+    return best.triangle_ref;
 }
 
 // Leaves a cell; OUTSIDE also at the end of the search.
-fn go_on(ray: Ray, limit: f32, anything: bool, best: f32, walk: ptr<function, Walk>) -> u32 {
+fn step_or_stop(ray: Ray, limit: f32, any: bool, best: f32, walk: ptr<function, Walk>) -> u32 {
     let border = nearest_border(*walk);
-    if (select(best < border.t, best < limit || border.t > limit, anything)) {
+    if (best < border.t || (any && best < limit)) {
         return OUTSIDE;
     }
     return advance(ray, border, walk);
 }
 
 fn cross_borders_to(ray: Ray, walk: ptr<function, Walk>, best: ptr<function, Found>) -> bool {
-    var own = Best(min((*best).t, T_MAX), (*best).triangle_ref);
-    let inside = cross_borders(ray, walk, &own);
-    if (own.triangle_ref != (*best).triangle_ref) {
-        *best = Found(own.t, read_triangle_ref(own.triangle_ref).w, own.triangle_ref);
+    var nearest = Best((*best).t, (*best).triangle_ref);
+    let inside = cross_borders(ray, walk, &nearest);
+    if (nearest.triangle_ref != (*best).triangle_ref) {
+        *best = Found(nearest.t, read_triangle_ref(nearest.triangle_ref).w, nearest.triangle_ref);
     }
     return inside;
-}
-
-fn nearest_hit(ray: Ray, alive: bool) -> u32 {
-    return find(ray, T_MAX, false, alive).triangle_ref;
-}
-
-fn any_hit(ray: Ray, limit: f32, alive: bool) -> bool {
-    return find(ray, limit, true, alive).t < limit;
 }

@@ -1,5 +1,5 @@
-// The test of Möller and Trumbore (1997), two-sided. Twin: src/workloads/trace/intersect/moller_trumbore.rs. A ray through an edge may miss
-// both of its triangles.
+// The test of Möller and Trumbore (1997), two-sided. Twin: src/workloads/trace/intersect/moller_trumbore.rs. A ray
+// through an edge may miss both of its triangles.
 
 // Numerators of distance and barycentric coordinates over the common denominator det >= 0.
 struct Solution {

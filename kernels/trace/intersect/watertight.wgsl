@@ -1,9 +1,10 @@
-// A watertight ray/triangle test in distance space. Twin: src/workloads/trace/intersect/watertight.rs, which says why it loses no ray.
+// A watertight ray/triangle test in distance space. Twin: src/workloads/trace/intersect/watertight.rs, which says why
+// it loses no ray.
 //
-// Corners become distances along the ray by axis, p = (corner - origin) * inverse direction. Across the ray's major axis
-// each has one rounded 2D position, and the ray is the point 0. It is inside where three comparisons of rounded products
-// agree. Comparisons cannot be contracted, and scale and shear are powers of two or zero, so that fusing one of their
-// products with the subtraction changes nothing.
+// Corners become distances along the ray by axis, p = (corner - origin) * inverse direction. Across the ray's major
+// axis each has one rounded 2D position, and the ray is the point 0. It is inside where three comparisons of rounded
+// products agree. Comparisons cannot be contracted, and scale and shear are powers of two or zero, so that fusing one
+// of their products with the subtraction changes nothing.
 
 // A triangle as a ray sees it.
 struct Projected {
@@ -42,8 +43,8 @@ fn own_interval(ray: Ray, seen: Projected) -> vec2<f32> {
     return vec2<f32>(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
 }
 
-// Each weight is made of its own edge. With 1 - u - v for the first one, Mesa 25.0 summed the edges in another order in kernels
-// that need no distance, and one pixel of 74,000 had another colour.
+// Each weight is made of its own edge. With 1 - u - v for the first one, Mesa 25.0 summed the edges in another order in
+// kernels that need no distance, and one pixel of 74,000 had another colour.
 fn hit_within(seen: Projected, interval: vec2<f32>) -> TriangleHit {
     let e = seen.edges;
     let sum = e.x + e.y + e.z;

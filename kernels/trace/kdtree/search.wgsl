@@ -1,10 +1,19 @@
-// kd-tree without a full stack: restart (Foley and Sugerman 2005), pushdown and a short stack of SHORT_STACK entries (Horn
-// et al. 2007), in the thesis's order. Twin: src/workloads/trace/kdtree/search.rs.
+// kd-tree without a full stack: restart (Foley and Sugerman 2005), pushdown and a short stack of SHORT_STACK entries
+// (Horn et al. 2007), in the thesis's order. Twin: src/workloads/trace/kdtree/search.rs.
 //
 // A restart resumes by the path taken, not by the distance reached: from afar, many cells have ends that round to the
 // same distance, and none of them may be skipped or visited endlessly.
 
 //!include lib/independent.wgsl
+
+struct KdTree {
+    bounds_min: vec3<f32>,
+    pad0: u32,
+    bounds_max: vec3<f32>,
+    pad1: u32,
+}
+
+@group(0) @binding(7) var<uniform> tree: KdTree;
 
 const RING: u32 = max(SHORT_STACK, 1u);
 
@@ -20,8 +29,8 @@ struct Descent {
     pushdown: bool,    // the ray has not branched yet: the restart node follows
     top: u32,          // entries ever pushed less those popped; modulo RING it is a place in the ring
     held: u32,         // entries that are still in the ring
-    // The trail (after Laine 2010): one bit for each branch on the way from restart_node to node, the deepest in the lowest
-    // bit; set where the ray is on the far side, so that both sides are done when it comes back
+    // The trail (after Laine 2010): one bit for each branch on the way from restart_node to node, the deepest in the
+    // lowest bit; set where the ray is on the far side, so that both sides are done when it comes back
     trail_low: u32,
     trail_high: u32,
     branches: u32,     // bits of the trail
@@ -31,7 +40,7 @@ struct Descent {
 }
 
 fn start_descent(ray: Ray, limit: f32) -> Descent {
-    let interval = ray_box(ray, structure.bounds_min, structure.bounds_max);
+    let interval = ray_box(ray, tree.bounds_min, tree.bounds_max);
     var d: Descent;
     d.t_begin = max(interval.x, 0.0);
     d.t_end = min(interval.y, limit);
@@ -42,10 +51,36 @@ fn start_descent(ray: Ray, limit: f32) -> Descent {
     return d;
 }
 
-// Go one inner node down.
+// A node's two words, packed by src/workloads/trace/kdtree/layout.rs. The left child follows its parent.
+
+fn is_leaf(node: vec2<u32>) -> bool {
+    return (node.y & 3u) == 3u;
+}
+
+fn leaf_first(node: vec2<u32>) -> u32 {
+    return node.x;
+}
+
+fn leaf_count(node: vec2<u32>) -> u32 {
+    return node.y >> 2u;
+}
+
+fn split_axis(node: vec2<u32>) -> u32 {
+    return node.y & 3u;
+}
+
+fn split_plane(node: vec2<u32>) -> f32 {
+    return bitcast<f32>(node.x);
+}
+
+fn right_child(node: vec2<u32>) -> u32 {
+    return node.y >> 2u;
+}
+
+// Goes one inner node down.
 fn descend(ray: Ray, node: vec2<u32>, d: ptr<function, Descent>) {
-    let axis = node.y & 3u;
-    let split = bitcast<f32>(node.x);
+    let axis = split_axis(node);
+    let split = split_plane(node);
     let inv = on_axis(ray.inv_direction, axis);
     // Different only where the direction is zero: an interval around the ray for a plane that it lies in
     let t_from = (split - on_axis(ray.origin_min, axis)) * inv;
@@ -54,7 +89,7 @@ fn descend(ray: Ray, node: vec2<u32>, d: ptr<function, Descent>) {
     // side of the origin, as in the thesis. A cell whose two ends round to one distance is still visited, as a
     // triangle may lie in it alone.
     let left = (*d).node + 1u;
-    let right = node.y >> 2u;
+    let right = right_child(node);
     let near = select(left, right, inv < 0.0);
     let far = select(right, left, inv < 0.0);
     if (t_from > (*d).t_max) {
@@ -69,7 +104,7 @@ fn descend(ray: Ray, node: vec2<u32>, d: ptr<function, Descent>) {
     }
 }
 
-// Both children are wanted: go to the near one, or where a restart comes back, to the one that the trail says.
+// The ray overlaps both children: goes to the near one, or after a restart to the one that the trail says.
 fn branch(near: u32, far: u32, t_from: f32, t_to: f32, d: ptr<function, Descent>) {
     (*d).pushdown = false;
     (*d).in_plane = (*d).in_plane || t_from != t_to;
@@ -99,7 +134,7 @@ fn branch(near: u32, far: u32, t_from: f32, t_to: f32, d: ptr<function, Descent>
     (*d).t_max = min((*d).t_max, t_to);
 }
 
-// Take the lowest `bits` bits from the trail, at most 63.
+// Takes the lowest `bits` bits from the trail, at most 63.
 fn shorten_trail(bits: u32, d: ptr<function, Descent>) {
     var rest = bits;
     if (rest >= 32u) {
@@ -114,8 +149,14 @@ fn shorten_trail(bits: u32, d: ptr<function, Descent>) {
     (*d).branches -= bits;
 }
 
-// Leave a leaf: go to the far side of the deepest branch that is on its near side, by a pop or by a restart. False where
-// there is none.
+// True if nothing nearer than `t` can follow. Exactly at the border of this leaf's cell the next leaf may hold a
+// triangle at the same distance with a lower index.
+fn ends_before(t: f32, d: Descent) -> bool {
+    return t < d.t_max && !d.in_plane;
+}
+
+// Leaves a leaf: goes to the far side of the deepest branch that is on its near side, by a pop or by a restart. False
+// where there is none.
 fn leave_leaf(d: ptr<function, Descent>) -> bool {
     var done = countTrailingZeros(~(*d).trail_low);
     if (done == 32u) {
@@ -144,25 +185,23 @@ fn leave_leaf(d: ptr<function, Descent>) -> bool {
     return true;
 }
 
-fn nearest_hit(ray: Ray, alive: bool) -> u32 {
-    var best = no_best();
+fn traverse(ray: Ray, limit: f32, any: bool, alive: bool) -> u32 {
     if (!alive) {
         return MISS;
     }
-    var d = start_descent(ray, T_MAX);
+    var d = start_descent(ray, limit);
     if (!d.inside) {
         return MISS;
     }
+    var best = Best(limit, MISS);
     loop {
-        let node = read_pair(d.node); // word, link: src/accel/kdtree.rs
-        if ((node.y & 3u) == 3u) {
+        let node = read_node8(d.node);
+        if (is_leaf(node)) {
             count_leaf();
-            for (var i = node.x; i < node.x + (node.y >> 2u); i += 1u) {
-                count_test();
-                test_triangle(ray, i, &best);
+            if (test_triangles(ray, leaf_first(node), leaf_count(node), any, &best)) {
+                break;
             }
-            // Exactly at the leaf's border the next leaf may hold a triangle at the same distance with a lower index
-            if ((best.t < d.t_max && !d.in_plane) || !leave_leaf(&d)) {
+            if (ends_before(best.t, d) || !leave_leaf(&d)) {
                 break;
             }
         } else {
@@ -171,33 +210,4 @@ fn nearest_hit(ray: Ray, alive: bool) -> u32 {
         }
     }
     return best.triangle_ref;
-}
-
-fn any_hit(ray: Ray, limit: f32, alive: bool) -> bool {
-    if (!alive) {
-        return false;
-    }
-    var d = start_descent(ray, limit);
-    if (!d.inside) {
-        return false;
-    }
-    loop {
-        let node = read_pair(d.node); // word, link: src/accel/kdtree.rs
-        if ((node.y & 3u) == 3u) {
-            count_leaf();
-            for (var i = node.x; i < node.x + (node.y >> 2u); i += 1u) {
-                count_test();
-                if (triangle_occludes(ray, i, limit)) {
-                    return true;
-                }
-            }
-            if (!leave_leaf(&d)) {
-                break;
-            }
-        } else {
-            count_inner();
-            descend(ray, node, &d);
-        }
-    }
-    return false;
 }

@@ -1,4 +1,4 @@
-//! `rtbench scenes fetch`.
+//! `rtbench scenes fetch`: downloads a scene of the catalogue.
 
 use super::super::library::LibraryArguments;
 use super::super::output;
@@ -8,12 +8,12 @@ use crate::scene::catalogue;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 
-/// Downloads a scene of the catalogue, unless it is here.
+/// Downloads a scene of the catalogue, unless its file exists.
 pub fn run(name: &str, library: &LibraryArguments) -> Result<()> {
     let entry = catalogue::get(name)?;
     let Some(folder) = library.folder() else {
         let problem = "no folder of scenes is given";
-        return Err(Error::argument("--scenes-dir", problem, "name the folder that the scene should go to"));
+        return Err(Error::argument("--scenes-dir", problem, "name the folder that the scene is to be put into"));
     };
     if let Some(path) = catalogue::locate(entry, &folder) {
         if let Some(found) = entry.other_hash(&path)? {
@@ -22,7 +22,7 @@ pub fn run(name: &str, library: &LibraryArguments) -> Result<()> {
         }
         let checked = match entry.known_hash(&path) {
             Some(_) => "its SHA-256 is the catalogue's",
-            None => "not verified: the catalogue knows no hash",
+            None => "not verified: the catalogue has no hash",
         };
         return output::print(&format!("{name} is here: {}: {checked}\n", path.display()));
     }
@@ -38,7 +38,7 @@ pub fn run(name: &str, library: &LibraryArguments) -> Result<()> {
             bar.set_position(done);
         }
         (Event::Downloaded(done, Some(total)), None) => {
-            // Without a terminal a line for every tenth is enough.
+            // Without a terminal, one line is printed per tenth.
             let now = done.checked_mul(10).and_then(|d| d.checked_div(total));
             if now != tenths {
                 tenths = now;
@@ -46,18 +46,18 @@ pub fn run(name: &str, library: &LibraryArguments) -> Result<()> {
             }
         }
         (Event::Downloaded(..), None) => {}
-        (Event::Again(reason), Some(bar)) => bar.println(format!("rtbench: {reason}; trying again")),
-        (Event::Again(reason), None) => output::note(&format!("{reason}; trying again")),
+        (Event::Retry(reason), Some(bar)) => bar.println(format!("rtbench: {reason}; trying again")),
+        (Event::Retry(reason), None) => output::note(&format!("{reason}; trying again")),
         (Event::Unpacking, _) => {}
     });
     if let Some(bar) = &bar {
         bar.finish_and_clear();
     }
     let (path, verified) = fetched?;
-    let words = match verified {
+    let checked = match verified {
         Verified::Archive => "the archive's SHA-256 is the catalogue's".to_owned(),
         Verified::File => "the file's SHA-256 is the catalogue's (the archive's is not known)".to_owned(),
-        Verified::Unknown(hash) => format!("not verified: the catalogue knows no hash; its SHA-256 is {hash}"),
+        Verified::Unknown(hash) => format!("not verified: the catalogue has no hash; the file's SHA-256 is {hash}"),
     };
-    output::print(&format!("{}: {words}\n", path.display()))
+    output::print(&format!("{}: {checked}\n", path.display()))
 }

@@ -1,4 +1,4 @@
-//! `rtbench scenes info`.
+//! `rtbench scenes info`: describes a scene.
 
 use super::super::library::LibraryArguments;
 use super::super::output;
@@ -10,22 +10,22 @@ use crate::workloads::trace::Selection;
 use crate::workloads::trace::backend::Config;
 use crate::workloads::trace::common::estimate;
 
-/// Loads a scene and prints what it is like.
-pub fn run(what: &str, library: &LibraryArguments) -> Result<()> {
-    let scene = load_in(&library.at_time(what), library.folder().as_deref())?;
-    let entry = catalogue::find(what.split(':').next().unwrap_or(what));
+/// Loads a scene and prints its properties.
+pub fn run(name: &str, library: &LibraryArguments) -> Result<()> {
+    let scene = load_in(&library.at_time(name), library.folder().as_deref())?;
+    let entry = catalogue::find(name.split(':').next().unwrap_or(name));
     let mut text = format!("{}\n", scene.name);
     let mut line = |name: &str, value: String| text += &format!("  {name:<22}{value}\n");
-    let beside = |count: usize, expected: Option<usize>| match expected {
+    let compared = |count: usize, expected: Option<usize>| match expected {
         Some(expected) if expected == count => format!("{count} (as the catalogue expects)"),
         Some(expected) => format!("{count} (the catalogue expects {expected})"),
         None => count.to_string(),
     };
-    line("triangles", beside(scene.triangles.len(), entry.map(|e| e.triangles)));
+    line("triangles", compared(scene.triangles.len(), entry.map(|e| e.triangles)));
     line("without area", scene.degenerate_triangles.to_string());
-    line("vertices", beside(scene.vertices.len(), entry.and_then(|e| e.vertices)));
+    line("vertices", compared(scene.vertices.len(), entry.and_then(|e| e.vertices)));
     line("materials", scene.materials.len().to_string());
-    line("mirroring surface", format!("{:.1} %", 100.0 * scene.mirror_share()));
+    line("mirror surface", format!("{:.1} %", 100.0 * scene.mirror_share()));
     line("lights", lights(&scene, entry));
     let bounds = scene.bounds();
     let placement = scene.placement;
@@ -45,8 +45,8 @@ pub fn run(what: &str, library: &LibraryArguments) -> Result<()> {
     }
     if let Some(entry) = entry {
         let class = match entry.class {
-            Class::Object => "an object to turn around",
-            Class::Walk => "a place to walk through",
+            Class::Object => "a single object: the camera or the light orbits around it",
+            Class::Walk => "an environment: the camera moves through it",
         };
         line("class", class.to_owned());
         line("grid of the thesis", entry.grid.clone().unwrap_or_else(|| "by the rule".to_owned()));
@@ -55,15 +55,16 @@ pub fn run(what: &str, library: &LibraryArguments) -> Result<()> {
         line("credit", entry.credit.clone());
     }
     let options = entry.and_then(|entry| entry.grid.as_deref()).map_or(String::new(), |grid| format!(":{grid}"));
-    let grid = Selection::parse(&format!("grid{options}"))?.grid_config().unwrap_or_default();
-    for estimate in estimate::estimates(&scene, &grid)? {
+    let selections =
+        [Selection::parse(&format!("grid{options}"))?, Selection::parse("kdtree")?, Selection::parse("bvh")?];
+    for estimate in estimate::estimates(&scene, &selections)? {
         let mib = |bytes: u64| format!("{:.2} MiB", bytes as f64 / f64::from(1 << 20));
         let (device, thesis, factor) = (mib(estimate.structure_bytes), mib(estimate.thesis_bytes), estimate.factor);
         let options = if estimate.structure == "grid" { options.as_str() } else { "" };
         let name = format!("{}{options}, estimated", estimate.structure);
         line(
             &name,
-            format!("{device} beside the vertices; {thesis} as the thesis counts; within a factor of {factor}"),
+            format!("{device} without the vertices; {thesis} by the thesis's definition; within a factor of {factor}"),
         );
     }
     line("content hash", scene.content_hash());
@@ -75,7 +76,7 @@ pub fn run(what: &str, library: &LibraryArguments) -> Result<()> {
 
 fn lights(scene: &Scene, entry: Option<&catalogue::Entry>) -> String {
     let own = match scene.lights.len() {
-        0 => "none: the camera path brings its own".to_owned(),
+        0 => "none: the camera path provides them".to_owned(),
         n => n.to_string(),
     };
     match entry.and_then(|e| e.lights) {

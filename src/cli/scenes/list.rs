@@ -1,4 +1,4 @@
-//! `rtbench scenes list`.
+//! `rtbench scenes list`: lists built-in scenes and the catalogue.
 
 use super::super::library::LibraryArguments;
 use super::super::output;
@@ -27,20 +27,20 @@ fn catalogue_text(folder: Option<&Path>) -> String {
     let mut text = String::from("\nThe catalogue: real scenes, as NAME; * is a scene of the thesis");
     text += &match folder {
         Some(folder) => format!("\nin the folder {}\n", folder.display()),
-        None => "; --scenes-dir or RTBENCH_SCENES say where to look\n".to_owned(),
+        None => "; --scenes-dir or RTBENCH_SCENES names the folder of their files\n".to_owned(),
     };
     for entry in catalogue::entries() {
         let star = if entry.published { " *" } else { "" };
         text += &format!("\n  {}{star}\n      {}, {} triangles\n", entry.name, entry.title, entry.triangles);
         text += &match folder.and_then(|folder| catalogue::locate(entry, folder)) {
-            Some(path) => format!("      here: {}\n", path.display()),
+            Some(path) => format!("      present: {}\n", path.display()),
             None => match &entry.fetch {
-                Some(_) => format!("      not here: `rtbench scenes fetch {}` gets it\n", entry.name),
-                None => format!("      not here: put it as {}\n", entry.file[0].path.display()),
+                Some(_) => format!("      not present: `rtbench scenes fetch {}` downloads it\n", entry.name),
+                None => format!("      not present: expected as {}\n", entry.file[0].path.display()),
             },
         };
         text += &format!("      from {}\n      licence: {}\n", entry.source, entry.licence);
     }
-    text += "\n`here` is a file of that name; `scenes info` and `scenes fetch` check whether it is the catalogue's, by SHA-256\n";
+    text += "\n`present` means that a file of that name exists; `scenes info` and `scenes fetch` check its SHA-256\n";
     text
 }

@@ -1,4 +1,4 @@
-//! `rtbench scenes`: what can be traced.
+//! `rtbench scenes`: lists, describes, converts and downloads scenes.
 
 mod fetch;
 mod info;
@@ -16,33 +16,33 @@ use std::path::PathBuf;
 #[derive(Subcommand, Debug)]
 #[command(after_help = EXAMPLES)]
 pub enum Command {
-    /// List the built-in scenes, the catalogue's (present or where to get them), and the camera paths
+    /// List the built-in scenes, the scenes of the catalogue and where to get them, and the camera paths
     List {
         #[command(flatten)]
         library: LibraryArguments,
     },
     /// Load a scene and describe it
     Info {
-        /// Scene file, or name of a scene with options
+        /// Scene file, or name of a scene, with options
         #[arg(value_name = "FILE|NAME[:KEY=VALUE,..]")]
         scene: String,
         #[command(flatten)]
         library: LibraryArguments,
     },
-    /// Write a scene as loaded into a binary cache that loads at once
+    /// Write a loaded scene to a binary cache, which loads faster
     Convert {
-        /// Scene file, or name of a scene with options
+        /// Scene file, or name of a scene, with options
         #[arg(value_name = "FILE|NAME[:KEY=VALUE,..]")]
         scene: String,
-        /// The cache, FILE.rtb
+        /// Cache file to write
         #[arg(value_name = "OUT.rtb")]
         out: PathBuf,
         #[command(flatten)]
         library: LibraryArguments,
     },
-    /// Download a scene of the catalogue from its official source, checked, into the folder of scenes
+    /// Download a scene of the catalogue from its official source into the folder of scenes, and check its hash
     Fetch {
-        /// A scene of the catalogue
+        /// Name of a scene of the catalogue
         #[arg(value_name = "NAME")]
         scene: String,
         #[command(flatten)]
@@ -57,12 +57,12 @@ Examples:
   rtbench scenes info hall:triangles=200000
   rtbench scenes convert dragon_vrip.ply dragon.rtb
   rtbench scenes fetch bunny --scenes-dir ~/scenes
-      what was begun is continued; nothing is overwritten";
+      a partial download is continued; no file is overwritten";
 
 /// Runs the command.
 ///
 /// # Errors
-/// The scene's, or the output's.
+/// Those of loading or downloading the scene, and of the output.
 pub fn run(command: &Command) -> Result<()> {
     match command {
         Command::List { library } => list::run(library),
@@ -72,13 +72,13 @@ pub fn run(command: &Command) -> Result<()> {
     }
 }
 
-fn convert(what: &str, out: &std::path::Path, library: &LibraryArguments) -> Result<()> {
+fn convert(name: &str, out: &std::path::Path, library: &LibraryArguments) -> Result<()> {
     if out.extension().is_none_or(|e| !e.eq_ignore_ascii_case(cache::EXTENSION)) {
         let problem = "the cache's name does not end in .rtb";
-        return Err(Error::argument(out.display().to_string(), problem, "formats are told by the file's extension"));
+        return Err(Error::argument(out.display().to_string(), problem, "the file's extension decides its format"));
     }
-    let (scene, sources) = library.load_with_sources(what)?;
-    files::keep(out, sources.paths())?;
+    let (scene, sources) = library.load_with_sources(name)?;
+    files::refuse_overwrite(out, sources.paths())?;
     cache::write(&scene, &sources, out)?;
     let (triangles, vertices) = (scene.triangles.len(), scene.vertices.len());
     output::print(&format!("{}: {}, {triangles} triangles, {vertices} vertices\n", out.display(), scene.name))

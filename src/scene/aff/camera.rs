@@ -1,14 +1,14 @@
-//! The viewer: `v`, the keyframes called `camera`, and the frames of `a`.
+//! The camera: the viewpoint `v`, the keyframes named `camera`, and the frames of the animation `a`.
 
 use super::keys::Keyframes;
-use crate::scene::text::{Fault, Words};
+use crate::scene::text::{Fault, Tokenizer};
 use crate::scene::{Pose, SceneCamera};
 use glam::DVec3;
 
-/// Most frames of an animation.
+/// The largest number of frames of an animation.
 const MAX_FRAMES: i64 = 100_000;
 
-/// `v`.
+/// The entity `v`: the viewpoint.
 #[derive(Clone, Copy)]
 pub struct Viewpoint {
     from: DVec3,
@@ -25,41 +25,41 @@ impl Default for Viewpoint {
 }
 
 impl Viewpoint {
-    /// Reads what follows `v`: its keywords in any order, each of them once or not at all.
-    pub fn read(words: &mut Words) -> Result<Viewpoint, Fault> {
+    /// Reads the parameters of `v`: its keywords in any order; all of them are optional.
+    pub fn read(tokens: &mut Tokenizer) -> Result<Viewpoint, Fault> {
         let mut view = Viewpoint::default();
         loop {
-            let keyword = words.peek().unwrap_or_default();
+            let keyword = tokens.peek().unwrap_or_default();
             let vector = match keyword {
                 b"from" => &mut view.from,
                 b"at" => &mut view.at,
                 b"up" => &mut view.up,
                 b"angle" => {
-                    words.skip(1, "v")?;
-                    view.angle = words.number("angle")?;
+                    tokens.skip(1, "v")?;
+                    view.angle = tokens.number("angle")?;
                     if !(view.angle > 0.0 && view.angle < 180.0) {
                         let problem = format!("the field of view of {} degrees is impossible", view.angle);
-                        return Err(words.fault(problem, "give an angle between 0 and 180"));
+                        return Err(tokens.fault(problem, "give an angle between 0 and 180"));
                     }
                     continue;
                 }
                 b"hither" | b"resolution" => {
-                    words.skip(1, "v")?;
-                    words.number("v")?;
+                    tokens.skip(1, "v")?;
+                    tokens.number("v")?;
                     if keyword == b"resolution" {
-                        words.number("v")?;
+                        tokens.number("v")?;
                     }
                     continue;
                 }
                 _ => return Ok(view),
             };
-            words.skip(1, "v")?;
-            *vector = words.numbers("v").map(DVec3::from)?;
+            tokens.skip(1, "v")?;
+            *vector = tokens.numbers("v").map(DVec3::from)?;
         }
     }
 }
 
-/// `a`.
+/// The entity `a`: time span and number of frames of the animation.
 #[derive(Clone, Copy)]
 pub struct Animation {
     pub start: f64,
@@ -68,13 +68,13 @@ pub struct Animation {
 }
 
 impl Animation {
-    /// Reads what follows `a`.
-    pub fn read(words: &mut Words) -> Result<Animation, Fault> {
-        let [start, end] = words.numbers("a")?;
-        let frames = words.integer("a")?;
+    /// Reads the parameters of `a`.
+    pub fn read(tokens: &mut Tokenizer) -> Result<Animation, Fault> {
+        let [start, end] = tokens.numbers("a")?;
+        let frames = tokens.integer("a")?;
         if !(1..=MAX_FRAMES).contains(&frames) {
-            let problem = format!("an animation of {frames} frames");
-            return Err(words.fault(problem, format!("give 1 to {MAX_FRAMES}")));
+            let problem = format!("the animation has {frames} frames");
+            return Err(tokens.fault(problem, format!("give 1 to {MAX_FRAMES}")));
         }
         Ok(Animation { start, end, frames: frames as usize })
     }
@@ -85,8 +85,8 @@ impl Animation {
     }
 }
 
-/// The scene's camera: a pose per frame if it is animated, one if it stands still. `None` if there is no viewpoint, or
-/// it looks nowhere. `offset` is the point of the file that is the origin in memory.
+/// The scene's camera, with a pose per frame if it is animated and a single pose otherwise. `None` if there is no
+/// viewpoint, or it has no direction. `offset` is the point of the file that is the origin in memory.
 pub fn camera(
     view: Option<&Viewpoint>,
     keys: Option<&Keyframes>,
@@ -112,7 +112,7 @@ pub fn camera(
     Some(SceneCamera { field_of_view, frames })
 }
 
-/// A pose; an up vector along the direction is replaced by another.
+/// A pose; an up vector parallel to the direction is replaced by a perpendicular vector.
 fn pose(time: f64, position: DVec3, direction: DVec3, up: DVec3) -> Pose {
     let up = up.normalize_or_zero();
     let up = if up.cross(direction).length() > 2e-3 { up } else { direction.any_orthonormal_vector() };

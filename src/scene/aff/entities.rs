@@ -1,49 +1,52 @@
-//! Entities one after another: everything but the primitives.
+//! Reads the sequence of entities of a file, and all entities except the primitives.
 
 use super::camera::{Animation, Viewpoint};
 use super::keys::{Keyframes, rotation};
-use super::{Pass, Reader};
+use super::{AffReader, Pass};
 use crate::scene::Material;
-use crate::scene::text::{Fault, Trouble, Words, quote_bytes};
+use crate::scene::text::{Fault, ReadError, Tokenizer, quote_bytes};
 use glam::{DAffine3, DVec3};
 use std::path::Path;
 
-/// A transform whose `}` is to come.
-struct Open {
+/// A transform block that has not been closed yet.
+struct OpenTransform {
     line: usize,
-    /// False if there is nothing to pop: the mesh does not follow in the first pass.
+    /// True if the transform was pushed onto the mesh builder's stack, as in the second pass.
     pushed: bool,
+    /// True if the block is invisible.
     hides: bool,
 }
 
-impl Reader {
-    /// Goes through all entities of a file.
-    pub(super) fn entities(&mut self, path: &Path, words: &mut Words) -> Result<(), Trouble> {
-        let mut open: Vec<Open> = Vec::new();
-        while let Some(entity) = words.next() {
+impl AffReader {
+    /// Reads all entities of a file.
+    pub(super) fn entities(&mut self, path: &Path, tokens: &mut Tokenizer) -> Result<(), ReadError> {
+        let mut open: Vec<OpenTransform> = Vec::new();
+        while let Some(entity) = tokens.next() {
             match entity {
-                b"i" => self.include(path, words)?,
+                b"i" => self.include(path, tokens)?,
                 b"xs" | b"x" => {
-                    let line = words.line();
-                    let (transform, visible) = self.transform(entity, words)?;
-                    words.expect("{", "a transform")?;
+                    let line = tokens.line();
+                    let (transform, visible) = self.transform(entity, tokens)?;
+                    tokens.expect("{", "a transform")?;
                     let pushed = self.pass == Pass::Mesh;
                     if pushed {
                         self.mesh.push(transform)?;
                     }
                     self.hidden += usize::from(!visible);
-                    open.push(Open { line, pushed, hides: !visible });
+                    open.push(OpenTransform { line, pushed, hides: !visible });
                 }
                 b"}" => {
                     let Some(ended) = open.pop() else {
-                        return Err(words.fault("`}` ends no transform", "remove it, or open one before").into());
+                        return Err(tokens
+                            .fault("`}` closes no transform", "remove it, or open a transform before it")
+                            .into());
                     };
                     self.hidden -= usize::from(ended.hides);
                     if ended.pushed {
                         self.mesh.pop();
                     }
                 }
-                _ => self.entity(entity, words)?,
+                _ => self.entity(entity, tokens)?,
             }
         }
         match open.last() {
@@ -55,9 +58,9 @@ impl Reader {
         }
     }
 
-    fn include(&mut self, path: &Path, words: &mut Words) -> Result<(), Trouble> {
-        let level = words.integer("i")?;
-        let name = words.need("i")?;
+    fn include(&mut self, path: &Path, tokens: &mut Tokenizer) -> Result<(), ReadError> {
+        let level = tokens.integer("i")?;
+        let name = tokens.need("i")?;
         if level > self.detail {
             return Ok(());
         }
@@ -67,87 +70,90 @@ impl Reader {
         Ok(())
     }
 
-    /// What follows `xs` or `x`: the transform, and whether what is inside is visible.
-    fn transform(&mut self, entity: &[u8], words: &mut Words) -> Result<(DAffine3, bool), Fault> {
+    /// Reads the parameters of `xs` or `x`: the transform, and whether the content of the block is visible.
+    fn transform(&mut self, entity: &[u8], tokens: &mut Tokenizer) -> Result<(DAffine3, bool), Fault> {
         if entity == b"x" {
-            let name = words.need("x")?;
+            let name = tokens.need("x")?;
             if self.pass == Pass::Keys {
                 return Ok((DAffine3::IDENTITY, true));
             }
-            return Ok(self.moved(name));
+            return Ok(self.animated(name));
         }
-        let scale = words.numbers("xs").map(DVec3::from)?;
-        let turn = rotation(words, "xs")?;
-        let translation = words.numbers("xs").map(DVec3::from)?;
+        let scale = tokens.numbers("xs").map(DVec3::from)?;
+        let turn = rotation(tokens, "xs")?;
+        let translation = tokens.numbers("xs").map(DVec3::from)?;
         Ok((DAffine3::from_scale_rotation_translation(scale, turn, translation), true))
     }
 
-    /// Where keyframes put things, and whether those are visible. BART's robots name keyframes that are nowhere: what
-    /// they would move stays where it is.
-    fn moved(&mut self, name: &[u8]) -> (DAffine3, bool) {
+    /// The transform of the named keyframes, and whether they make objects visible. If they do not exist, the transform
+    /// is the identity: BART's scene `robots` names keyframes that it does not define.
+    fn animated(&mut self, name: &[u8]) -> (DAffine3, bool) {
         match self.keys.get(name) {
             Some(keys) => (keys.transform(self.time), keys.visible(self.time)),
             None => {
                 let name = quote_bytes(name);
-                self.mesh.warnings.add(&format!("there are no keyframes {name}: what they would move stays"));
+                self.mesh.warnings.add(&format!("there are no keyframes {name}: what refers to them is not animated"));
                 (DAffine3::IDENTITY, true)
             }
         }
     }
 
-    fn entity(&mut self, entity: &[u8], words: &mut Words) -> Result<(), Fault> {
+    fn entity(&mut self, entity: &[u8], tokens: &mut Tokenizer) -> Result<(), Fault> {
         let keys = self.pass == Pass::Keys;
         match entity {
-            b"v" => self.view = Some(Viewpoint::read(words)?),
-            b"b" => self.background = words.numbers("b").map(DVec3::from)?.as_vec3().max(glam::Vec3::ZERO),
-            b"am" => self.ambient = words.numbers("am").map(DVec3::from)?,
-            b"a" => self.animation = Some(Animation::read(words)?),
-            b"d" => self.detail = words.integer("d")?,
+            b"v" => self.view = Some(Viewpoint::read(tokens)?),
+            b"b" => self.background = tokens.numbers("b").map(DVec3::from)?.as_vec3().max(glam::Vec3::ZERO),
+            b"am" => self.ambient = tokens.numbers("am").map(DVec3::from)?,
+            b"a" => self.animation = Some(Animation::read(tokens)?),
+            b"d" => self.detail = tokens.integer("d")?,
             b"k" => {
-                let name = words.need("k")?;
-                let keyframes = Keyframes::read(words)?;
-                if keys && keyframes.left_out > 0 {
-                    let (name, count) = (quote_bytes(name), keyframes.left_out);
-                    self.mesh.warnings.add(&format!("keyframes {name}: {count} keys out of order left out"));
+                let name = tokens.need("k")?;
+                let keyframes = Keyframes::read(tokens)?;
+                if keys && keyframes.ignored > 0 {
+                    let (name, count) = (quote_bytes(name), keyframes.ignored);
+                    self.mesh.warnings.add(&format!("keyframes {name}: {count} keys out of order are ignored"));
                 }
                 if keys && self.keys.insert(name.to_vec(), keyframes).is_some() {
                     let name = quote_bytes(name);
-                    self.mesh.warnings.add(&format!("keyframes {name} are given again: the last ones count"));
+                    self.mesh
+                        .warnings
+                        .add(&format!("keyframes {name} are defined more than once: the last definition is used"));
                 }
             }
-            b"l" | b"la" => self.light(entity == b"la", words)?,
-            b"f" => self.plain_material(words)?,
-            b"fm" => self.material(words)?,
-            _ if keys => self.skip_primitive(entity, words)?,
-            _ => self.primitive(entity, words)?,
+            b"l" | b"la" => self.light(entity == b"la", tokens)?,
+            b"f" => self.plain_material(tokens)?,
+            b"fm" => self.material(tokens)?,
+            _ if keys => self.skip_primitive(entity, tokens)?,
+            _ => self.primitive(entity, tokens)?,
         }
         Ok(())
     }
 
-    /// `l`, or `la`, which keyframes move.
-    fn light(&mut self, animated: bool, words: &mut Words) -> Result<(), Fault> {
-        let name = if animated { Some(words.need("la")?) } else { None };
-        let position = words.numbers("l").map(DVec3::from)?;
-        let coloured = words.peek_on_line().is_some_and(|word| word[0].is_ascii_digit() || b"+-.".contains(&word[0]));
-        let colour = if coloured { words.numbers("l").map(DVec3::from)? } else { DVec3::ONE };
+    /// Reads the parameters of `l`, or of `la`, which keyframes animate.
+    fn light(&mut self, animated: bool, tokens: &mut Tokenizer) -> Result<(), Fault> {
+        let name = if animated { Some(tokens.need("la")?) } else { None };
+        let position = tokens.numbers("l").map(DVec3::from)?;
+        let coloured = tokens.peek_on_line().is_some_and(|word| word[0].is_ascii_digit() || b"+-.".contains(&word[0]));
+        let colour = if coloured { tokens.numbers("l").map(DVec3::from)? } else { DVec3::ONE };
         if !self.building() {
             return Ok(());
         }
         let (position, visible) = match name {
             None => (position, true),
             Some(name) => {
-                let (transform, visible) = self.moved(name);
+                let (transform, visible) = self.animated(name);
                 (transform.transform_point3(position), visible)
             }
         };
         if visible { self.mesh.light(position, colour) } else { Ok(()) }
     }
 
-    /// `f`: colour, Kd, Ks, exponent, transparency, index of refraction; a texture's name may follow in the line.
-    fn plain_material(&mut self, words: &mut Words) -> Result<(), Fault> {
-        let [r, g, b, diffuse, specular, exponent, transparency, _index] = words.numbers("f")?;
-        if words.peek_on_line().is_some_and(|word| word.contains(&b'.')) {
-            words.skip(1, "f")?;
+    /// Reads the parameters of `f`: colour, Kd, Ks, exponent, transparency, index of refraction, and optionally the
+    /// name of a texture on the same line.
+    fn plain_material(&mut self, tokens: &mut Tokenizer) -> Result<(), Fault> {
+        let [r, g, b, diffuse, specular, exponent, transparency, _index] = tokens.numbers("f")?;
+        if tokens.peek_on_line().is_some_and(|word| word.contains(&b'.')) {
+            tokens.skip(1, "f")?;
             self.texture();
         }
         let diffuse = (DVec3::new(r, g, b) * diffuse).as_vec3();
@@ -158,12 +164,12 @@ impl Reader {
         Ok(())
     }
 
-    /// `fm`: ambient, diffuse, specular colour, exponent, transparency, index of refraction.
-    fn material(&mut self, words: &mut Words) -> Result<(), Fault> {
-        let ambient = words.numbers("fm").map(DVec3::from)? * self.ambient;
-        let diffuse = words.numbers("fm").map(DVec3::from)?;
-        let specular = words.numbers("fm").map(DVec3::from)?;
-        let [exponent, transparency, _index] = words.numbers("fm")?;
+    /// Reads the parameters of `fm`: ambient, diffuse and specular colour, exponent, transparency, index of refraction.
+    fn material(&mut self, tokens: &mut Tokenizer) -> Result<(), Fault> {
+        let ambient = tokens.numbers("fm").map(DVec3::from)? * self.ambient;
+        let diffuse = tokens.numbers("fm").map(DVec3::from)?;
+        let specular = tokens.numbers("fm").map(DVec3::from)?;
+        let [exponent, transparency, _index] = tokens.numbers("fm")?;
         let luminance = specular.dot(LUMINANCE).clamp(0.0, 1.0) as f32;
         let material = Material { ambient: ambient.as_vec3(), diffuse: diffuse.as_vec3(), ..Material::neutral() };
         self.set_material(material.shiny(specular.as_vec3(), exponent as f32, luminance), transparency);
@@ -173,19 +179,19 @@ impl Reader {
     fn set_material(&mut self, material: Material, transparency: f64) {
         if self.pass == Pass::Mesh {
             if transparency > 0.0 {
-                self.mesh.warnings.add("transparent material: shown opaque");
+                self.mesh.warnings.add("transparent material: rendered opaque");
             }
             self.mesh.set_material(material);
         }
     }
 
-    /// Says that a texture is passed over.
+    /// Adds the warning that textures are ignored.
     pub(super) fn texture(&mut self) {
         if self.pass == Pass::Mesh {
-            self.mesh.warnings.add("texture passed over");
+            self.mesh.warnings.add("texture ignored");
         }
     }
 }
 
-/// Weights of linear red, green and blue in luminance (Rec. 709).
+/// Weights of linear red, green and blue in the luminance (Rec. 709).
 const LUMINANCE: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);

@@ -1,101 +1,100 @@
-//! Keyframes: what `k NAME { ... }` says, and where it puts things at a time.
+//! Keyframes: the entity `k NAME { ... }`, and its transform at a given time.
 
-use super::spline::{Key, Spline, Turn};
-use crate::scene::text::{Fault, Words, quote_bytes};
+use super::spline::{Key, Rotation, Spline};
+use crate::scene::text::{Fault, Tokenizer, quote_bytes};
 use glam::{DAffine3, DQuat, DVec3};
 
-/// The keyframes of one name. Empty blocks leave things as they are.
+/// The keyframes of one name. A missing block gives the identity.
 #[derive(Default)]
 pub struct Keyframes {
     translations: Vec<Key<DVec3>>,
-    rotations: Vec<Key<Turn>>,
+    rotations: Vec<Key<Rotation>>,
     scales: Vec<Key<DVec3>>,
-    /// Time and whether it is visible from then on.
+    /// Times, and whether objects are visible from then on.
     visibility: Vec<(f64, bool)>,
-    /// Keys that were left out because their time lies before that of the key ahead of them. (BART's robots have some:
-    /// there they repeat what was said before.)
-    pub left_out: usize,
+    /// Number of keys that were ignored because their time is before the previous key's. (BART's scene `robots` has
+    /// some, which repeat earlier keys.)
+    pub ignored: usize,
 }
 
 impl Keyframes {
-    /// Reads `{ blocks }`.
-    pub fn read(words: &mut Words) -> Result<Keyframes, Fault> {
+    /// Reads the blocks in braces.
+    pub fn read(tokens: &mut Tokenizer) -> Result<Keyframes, Fault> {
         let mut keyframes = Keyframes::default();
-        words.expect("{", "k")?;
+        tokens.expect("{", "k")?;
         loop {
-            match words.need("k")? {
+            match tokens.need("k")? {
                 b"}" => return Ok(keyframes),
                 b"transl" => {
-                    keyframes.translations = keyframes.block(words, "transl", |words, _| vector(words, "transl"))?
+                    keyframes.translations = keyframes.block(tokens, "transl", |tokens, _| vector(tokens, "transl"))?
                 }
-                b"scale" => keyframes.scales = keyframes.block(words, "scale", |words, _| vector(words, "scale"))?,
-                b"rot" => keyframes.rotations = keyframes.block(words, "rot", turn)?,
+                b"scale" => keyframes.scales = keyframes.block(tokens, "scale", |tokens, _| vector(tokens, "scale"))?,
+                b"rot" => keyframes.rotations = keyframes.block(tokens, "rot", turn)?,
                 b"visibility" => {
-                    let count = words.count(4, "visibility")?;
+                    let count = tokens.count(4, "visibility")?;
                     for _ in 0..count {
-                        let [time, visible] = words.numbers("visibility")?;
+                        let [time, visible] = tokens.numbers("visibility")?;
                         if keyframes.visibility.last().is_none_or(|last| time >= last.0) {
                             keyframes.visibility.push((time, visible != 0.0));
                         } else {
-                            keyframes.left_out += 1;
+                            keyframes.ignored += 1;
                         }
                     }
                 }
                 other => {
-                    let problem = format!("{} is no block of keyframes", quote_bytes(other));
-                    return Err(words.fault(problem, "blocks are transl, rot, scale and visibility"));
+                    let problem = format!("{} is not a block of keyframes", quote_bytes(other));
+                    return Err(tokens.fault(problem, "blocks are transl, rot, scale and visibility"));
                 }
             }
         }
     }
 
-    /// Rows of a time, a value, tension, continuity and bias.
+    /// Reads a block; its rows are time, value, tension, continuity and bias.
     fn block<T>(
         &mut self,
-        words: &mut Words,
-        what: &str,
-        value: fn(&mut Words, Option<&T>) -> Result<T, Fault>,
+        tokens: &mut Tokenizer,
+        context: &str,
+        value: fn(&mut Tokenizer, Option<&T>) -> Result<T, Fault>,
     ) -> Result<Vec<Key<T>>, Fault> {
-        let count = words.count(14, what)?;
+        let count = tokens.count(14, context)?;
         let mut keys: Vec<Key<T>> = Vec::with_capacity(count);
         for _ in 0..count {
-            let time = words.number(what)?;
-            // The curve never ends at the second key: it has no side to be turned to
+            let time = tokens.number(context)?;
+            // No segment of the curve ends at the second key, so its quaternion is not aligned with the one before.
             let before = keys.get(1).and(keys.last());
-            let value = value(words, before.map(|before| &before.value))?;
-            let [tension, continuity, bias] = words.numbers(what)?;
+            let value = value(tokens, before.map(|before| &before.value))?;
+            let [tension, continuity, bias] = tokens.numbers(context)?;
             if keys.last().is_none_or(|last| time >= last.time) {
                 keys.push(Key { time, value, tension, continuity, bias });
             } else {
-                self.left_out += 1;
+                self.ignored += 1;
             }
         }
         if keys.len() < 4 {
-            let problem = format!("{what}: {} keys in order of time", keys.len());
-            return Err(words.fault(problem, "a spline needs four at least"));
+            let problem = format!("{context}: {} keys in order of time", keys.len());
+            return Err(tokens.fault(problem, "a spline needs at least four"));
         }
         Ok(keys)
     }
 
-    /// The first time at which anything is given.
+    /// The first time at which a spline is defined, that of its second key.
     pub fn first_time(&self) -> Option<f64> {
         let splines = [second(&self.translations), second(&self.rotations), second(&self.scales)];
         splines.into_iter().flatten().min_by(f64::total_cmp)
     }
 
-    /// Where things are at a time: scaled, then turned, then moved.
+    /// The transform at a time: it scales, then rotates, then translates.
     pub fn transform(&self, time: f64) -> DAffine3 {
         let vector = |keys: &[Key<DVec3>], default| if keys.is_empty() { default } else { keys.at(time) };
         let scale = vector(&self.scales, DVec3::ONE);
         DAffine3::from_scale_rotation_translation(scale, self.rotation(time), vector(&self.translations, DVec3::ZERO))
     }
 
-    /// The rotation alone.
     pub fn rotation(&self, time: f64) -> DQuat {
         if self.rotations.is_empty() { DQuat::IDENTITY } else { self.rotations.as_slice().at(time) }
     }
 
-    /// Whether things are visible at a time: before the first key they are.
+    /// True if objects are visible at a time; they are before the first key.
     pub fn visible(&self, time: f64) -> bool {
         let before = self.visibility.partition_point(|key| key.0 <= time);
         before == 0 || self.visibility[before - 1].1
@@ -106,17 +105,17 @@ fn second<T>(keys: &[Key<T>]) -> Option<f64> {
     keys.get(1).map(|key| key.time)
 }
 
-fn vector(words: &mut Words, what: &str) -> Result<DVec3, Fault> {
-    words.numbers(what).map(DVec3::from)
+fn vector(tokens: &mut Tokenizer, context: &str) -> Result<DVec3, Fault> {
+    tokens.numbers(context).map(DVec3::from)
 }
 
-fn turn(words: &mut Words, before: Option<&Turn>) -> Result<Turn, Fault> {
-    rotation(words, "rot").map(|given| Turn::new(given, before))
+fn turn(tokens: &mut Tokenizer, before: Option<&Rotation>) -> Result<Rotation, Fault> {
+    rotation(tokens, "rot").map(|given| Rotation::new(given, before))
 }
 
-/// An axis and an angle in degrees; an axis of no length turns nothing.
-pub fn rotation(words: &mut Words, what: &str) -> Result<DQuat, Fault> {
-    let [x, y, z, degrees] = words.numbers(what)?;
+/// Reads a rotation as an axis and an angle in degrees; an axis of length zero gives the identity.
+pub fn rotation(tokens: &mut Tokenizer, context: &str) -> Result<DQuat, Fault> {
+    let [x, y, z, degrees] = tokens.numbers(context)?;
     let axis = DVec3::new(x, y, z).normalize_or_zero();
     Ok(if axis == DVec3::ZERO { DQuat::IDENTITY } else { DQuat::from_axis_angle(axis, degrees.to_radians()) })
 }

@@ -1,19 +1,20 @@
-//! BART's scenes (`.aff`; Lext, Assarsson, Möller 2000), and NFF (`.nff`; Haines 1987), which they extend.
+//! Reader of BART's scenes (`.aff`; Lext, Assarsson, Möller 2000), and of NFF (`.nff`; Haines 1987), which they extend.
 //!
-//! What moves is frozen at one time (`FILE:time=3`): by default where the animation (`a`) begins, without one at the
-//! first key of all. The keyframes called `camera` become [`Scene::camera`], a pose per frame of `a`.
+//! Animated geometry is evaluated at one time (`FILE:time=3`): by default at the start of the animation (`a`), without
+//! an animation at the first of all keys. The keyframes named `camera` become [`Scene::camera`], with a pose per frame
+//! of `a`.
 //!
-//! Keyframes and the animation's times may stand behind what they move, so the files are gone through twice: first for
-//! those alone, then for the rest.
+//! Keyframes and the animation's times may follow the objects that refer to them, so the files are read in two passes:
+//! the first reads only those, the second reads the rest.
 //!
-//! **Shading.** BART's renderers take a surface with a specular colour for a mirror of that colour; our mirrors have one
-//! number. So `fm` keeps its colours and mirrors as much as its specular colour is bright (by luminance), and `f` has the
-//! diffuse colour rgb * Kd, a white highlight of Ks and mirrors as much as Ks. `fm`'s ambient colour is taken times the
-//! global ambient light (`am`); `f`, which has none, gets a tenth of its diffuse colour. Transparency and textures are
-//! passed over with a warning.
+//! **Shading.** BART's renderers treat a surface with a specular colour as a mirror of that colour; mirrors in this
+//! program have a single reflectivity. `fm` keeps its colours, and its reflectivity is the luminance of its specular
+//! colour. `f` has the diffuse colour rgb * Kd, a white highlight of Ks, and the reflectivity Ks. The ambient colour of
+//! `fm` is multiplied by the global ambient light (`am`); `f` has none and gets a tenth of its diffuse colour.
+//! Transparency and textures are ignored with a warning.
 //!
-//! **Curved surfaces** have [`SEGMENTS`] segments around, unless the user wants others (`FILE:segments=64`); cones may be
-//! left out (`FILE:cones=no`), as the thesis did.
+//! **Curved surfaces** have [`SEGMENTS`] segments around their axis, unless the user sets others (`FILE:segments=64`).
+//! Cones can be omitted (`FILE:cones=no`), as in the thesis of 2009.
 
 mod camera;
 mod entities;
@@ -22,7 +23,7 @@ mod primitives;
 mod spline;
 
 use super::mesh_builder::MeshBuilder;
-use super::text::{Includes, Syntax, Trouble, Words};
+use super::text::{Includes, ReadError, Syntax, Tokenizer};
 use super::{Options, Scene};
 use crate::error::{Error, Result};
 use camera::{Animation, Viewpoint};
@@ -31,22 +32,22 @@ use keys::Keyframes;
 use std::collections::HashMap;
 use std::path::Path;
 
-/// Segments around a sphere or cone.
+/// The default number of segments around a sphere or cone.
 pub const SEGMENTS: u32 = 24;
 
 static SYNTAX: Syntax = Syntax::new(b"#%", b"{}");
 
-/// What is looked for while the files are gone through.
+/// The two passes over the files.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Pass {
-    /// Keyframes, animation, ambient light, viewpoint.
+    /// Reads keyframes, animation, ambient light and viewpoint.
     Keys,
-    /// Everything else, at a known time.
+    /// Reads everything else, at a known time.
     Mesh,
 }
 
-/// Everything that is known while the files are gone through.
-struct Reader {
+/// The state while the files are read.
+struct AffReader {
     includes: Includes,
     pass: Pass,
     segments: u32,
@@ -58,18 +59,18 @@ struct Reader {
     background: Vec3,
     detail: i64,
     time: f64,
-    /// Braces around what is not visible.
+    /// Number of open blocks that are invisible.
     hidden: usize,
     mesh: MeshBuilder,
 }
 
-/// Reads the file and what it includes.
+/// Reads the file and the files that it includes.
 ///
 /// # Errors
-/// [`crate::Error::Input`] for whatever is wrong with one of the files.
+/// [`crate::Error::Input`] if one of the files is not valid.
 pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     let (includes, bytes) = Includes::new(path, options.outside)?;
-    let mut reader = Reader {
+    let mut reader = AffReader {
         includes,
         pass: Pass::Keys,
         segments: options.segments.unwrap_or(SEGMENTS),
@@ -88,7 +89,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     let first_key = || reader.keys.values().filter_map(Keyframes::first_time).min_by(f64::total_cmp);
     let begin = reader.animation.map(|a| a.start).or_else(first_key);
     let time = options.time.or(begin);
-    // Without any key, the earliest time there is stands for the first key of animated triangles as well
+    // Without keys the time is the earliest possible, at which animated triangles have their first position.
     reader.time = time.unwrap_or(f64::MIN);
     reader.pass = Pass::Mesh;
     reader.detail = 0;
@@ -108,14 +109,14 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     Ok(Scene { background: reader.background, camera, ..reader.mesh.finish() })
 }
 
-impl Reader {
-    /// Goes through one file.
+impl AffReader {
+    /// Reads one file in the current pass.
     fn file(&mut self, path: &Path, bytes: &[u8]) -> Result<()> {
-        let mut words = Words::new(bytes, &SYNTAX);
-        self.entities(path, &mut words).map_err(|trouble: Trouble| trouble.at(words.line()).of(path))
+        let mut tokens = Tokenizer::new(bytes, &SYNTAX);
+        self.entities(path, &mut tokens).map_err(|error: ReadError| error.at(tokens.line()).of(path))
     }
 
-    /// True if geometry and lights are wanted here.
+    /// True if geometry and lights are added to the scene, which they are in visible blocks of the second pass.
     fn building(&self) -> bool {
         self.pass == Pass::Mesh && self.hidden == 0
     }

@@ -1,105 +1,105 @@
-//! Primitives: what becomes triangles.
+//! Reads the primitives, which are converted to triangles.
 
-use super::Reader;
-use crate::scene::text::{Fault, Words, quote_bytes};
+use super::AffReader;
+use crate::scene::text::{Fault, Tokenizer, quote_bytes};
 use glam::DVec3;
 
-/// A point with a normal.
+/// A position and a normal.
 type Corner = (DVec3, DVec3);
 
-impl Reader {
-    /// Passes over a primitive.
-    pub(super) fn skip_primitive(&mut self, entity: &[u8], words: &mut Words) -> Result<(), Fault> {
+impl AffReader {
+    /// Skips the parameters of a primitive.
+    pub(super) fn skip_primitive(&mut self, entity: &[u8], tokens: &mut Tokenizer) -> Result<(), Fault> {
         let count = match entity {
             b"s" => 4,
             b"c" => 8,
             b"tt" => 1 + 15,
             b"ttp" => 1 + 24,
-            b"p" => words.count(6, "p")? * 3,
-            b"pp" => words.count(12, "pp")? * 6,
-            b"tpa" => words.count(38, "tpa")? * 19,
-            b"m" => return self.mesh(words, false),
+            b"p" => tokens.count(6, "p")? * 3,
+            b"pp" => tokens.count(12, "pp")? * 6,
+            b"tpa" => tokens.count(38, "tpa")? * 19,
+            b"m" => return self.mesh(tokens, false),
             other => {
-                let problem = format!("{} is no entity of a BART or NFF file", quote_bytes(other));
-                return Err(words.fault(problem, "repair or remove it"));
+                let problem = format!("{} is not an entity of BART or NFF files", quote_bytes(other));
+                return Err(tokens.fault(problem, "repair or remove it"));
             }
         };
-        words.skip(count, "a primitive")
+        tokens.skip(count, "a primitive")
     }
 
-    /// Reads a primitive.
-    pub(super) fn primitive(&mut self, entity: &[u8], words: &mut Words) -> Result<(), Fault> {
+    /// Reads the parameters of a primitive and adds it to the mesh.
+    pub(super) fn primitive(&mut self, entity: &[u8], tokens: &mut Tokenizer) -> Result<(), Fault> {
         if !self.building() {
-            return self.skip_primitive(entity, words);
+            return self.skip_primitive(entity, tokens);
         }
         match entity {
             b"s" => {
-                let [x, y, z, radius] = words.numbers("s")?;
+                let [x, y, z, radius] = tokens.numbers("s")?;
                 self.mesh.sphere(DVec3::new(x, y, z), radius, self.segments)
             }
             b"c" => {
-                let [a, b, c, base, x, y, z, apex] = words.numbers("c")?;
+                let [a, b, c, base, x, y, z, apex] = tokens.numbers("c")?;
                 match self.cones {
                     true => self.mesh.cone((DVec3::new(a, b, c), base), (DVec3::new(x, y, z), apex), self.segments),
                     false => Ok(()),
                 }
             }
             b"p" => {
-                let count = words.count(6, "p")?;
-                let corners: Vec<DVec3> = read(count, || vector(words, "p"))?;
+                let count = tokens.count(6, "p")?;
+                let corners: Vec<DVec3> = read(count, || vector(tokens, "p"))?;
                 self.polygon(&corners, &[])
             }
             b"pp" => {
-                let count = words.count(12, "pp")?;
+                let count = tokens.count(12, "pp")?;
                 let (corners, normals) =
-                    read(count, || corner(words, "pp"))?.into_iter().unzip::<_, _, Vec<_>, Vec<_>>();
+                    read(count, || corner(tokens, "pp"))?.into_iter().unzip::<_, _, Vec<_>, Vec<_>>();
                 self.polygon(&corners, &normals)
             }
             b"tt" | b"ttp" => {
-                words.need("a texture")?;
+                tokens.need("a texture")?;
                 self.texture();
                 let (mut corners, mut normals) = (Vec::new(), Vec::new());
                 for _ in 0..3 {
-                    corners.push(vector(words, "tt")?);
+                    corners.push(vector(tokens, "tt")?);
                     if entity == b"ttp" {
-                        normals.push(vector(words, "ttp")?);
+                        normals.push(vector(tokens, "ttp")?);
                     }
-                    words.numbers::<2>("tt")?;
+                    tokens.numbers::<2>("tt")?;
                 }
                 self.polygon(&corners, &normals)
             }
-            b"tpa" => self.animated_triangle(words),
-            b"m" => self.mesh(words, true),
-            _ => self.skip_primitive(entity, words),
+            b"tpa" => self.animated_triangle(tokens),
+            b"m" => self.mesh(tokens, true),
+            _ => self.skip_primitive(entity, tokens),
         }
     }
 
-    /// A polygon that shares no vertex with others.
+    /// Adds a polygon that shares no vertices with others.
     fn polygon(&mut self, corners: &[DVec3], normals: &[DVec3]) -> Result<(), Fault> {
         self.mesh.new_shape();
         self.mesh.polygon(corners, normals)
     }
 
-    /// `tpa`: a triangle given at several times; between them its corners and normals go straight.
-    fn animated_triangle(&mut self, words: &mut Words) -> Result<(), Fault> {
-        let count = words.count(38, "tpa")?;
+    /// Reads `tpa`: a triangle with corners and normals at several times, which are interpolated linearly.
+    fn animated_triangle(&mut self, tokens: &mut Tokenizer) -> Result<(), Fault> {
+        let count = tokens.count(38, "tpa")?;
         let mut before: Option<(f64, [Corner; 3])> = None;
         let mut found: Option<[Corner; 3]> = None;
         for _ in 0..count {
-            let time = words.number("tpa")?;
+            let time = tokens.number("tpa")?;
             let mut now = [(DVec3::ZERO, DVec3::ZERO); 3];
             for corner_now in &mut now {
-                *corner_now = corner(words, "tpa")?;
+                *corner_now = corner(tokens, "tpa")?;
             }
             match (&before, &found) {
                 (Some((earlier, _)), _) if time < *earlier => {
-                    let problem = format!("tpa: time {time} comes behind {earlier}");
-                    return Err(words.fault(problem, "put the triangle's times in order"));
+                    let problem = format!("tpa: time {time} follows the later time {earlier}");
+                    return Err(tokens.fault(problem, "put the triangle's times in order"));
                 }
                 (_, Some(_)) => {}
                 (None, _) if self.time <= time => found = Some(now),
                 (Some((earlier, then)), _) if self.time <= time => {
-                    // `earlier` is before the wanted time, which is not behind `time`: they differ
+                    // `earlier` is less than `self.time`, which is at most `time`: the divisor is not zero.
                     let share = (self.time - earlier) / (time - earlier);
                     found = Some(
                         [0, 1, 2].map(|i: usize| (then[i].0.lerp(now[i].0, share), then[i].1.lerp(now[i].1, share))),
@@ -110,48 +110,48 @@ impl Reader {
             before = Some((time, now));
         }
         let Some(corners) = found.or(before.map(|(_, last)| last)) else {
-            return Err(words.fault("tpa: a triangle at no time at all", "give it one time at least"));
+            return Err(tokens.fault("tpa: the triangle has no times", "give it at least one time"));
         };
         self.polygon(&corners.map(|c| c.0), &corners.map(|c| c.1))
     }
 
-    /// `m`: an indexed mesh.
-    fn mesh(&mut self, words: &mut Words, build: bool) -> Result<(), Fault> {
-        words.expect("vertices", "m")?;
-        let count = words.count(6, "vertices")?;
-        let positions = vectors(count, words, "vertices", build)?;
+    /// Reads `m`: an indexed mesh. It is skipped unless `build` is set.
+    fn mesh(&mut self, tokens: &mut Tokenizer, build: bool) -> Result<(), Fault> {
+        tokens.expect("vertices", "m")?;
+        let count = tokens.count(6, "vertices")?;
+        let positions = vectors(count, tokens, "vertices", build)?;
         let (mut normals, mut normal_count) = (Vec::new(), None);
         let mut texture_count = None;
         loop {
-            match words.need("m")? {
+            match tokens.need("m")? {
                 b"normals" => {
-                    let count = words.count(6, "normals")?;
-                    normals = vectors(count, words, "normals", build)?;
+                    let count = tokens.count(6, "normals")?;
+                    normals = vectors(count, tokens, "normals", build)?;
                     normal_count = Some(count);
                 }
                 b"texturecoords" => {
-                    let count = words.count(4, "texturecoords")?;
-                    words.need("a texture")?;
+                    let count = tokens.count(4, "texturecoords")?;
+                    tokens.need("a texture")?;
                     self.texture();
-                    words.skip(count * 2, "texturecoords")?;
+                    tokens.skip(count * 2, "texturecoords")?;
                     texture_count = Some(count);
                 }
                 b"triangles" => break,
                 other => {
-                    let problem = format!("{} is no part of a mesh", quote_bytes(other));
-                    return Err(words.fault(problem, "parts are vertices, normals, texturecoords and triangles"));
+                    let problem = format!("{} is not a part of a mesh", quote_bytes(other));
+                    return Err(tokens.fault(problem, "parts are vertices, normals, texturecoords and triangles"));
                 }
             }
         }
         let indices = 3 * (1 + usize::from(normal_count.is_some()) + usize::from(texture_count.is_some()));
-        let triangles = words.count(2 * indices, "triangles")?;
+        let triangles = tokens.count(2 * indices, "triangles")?;
         if !build {
-            return words.skip(triangles * indices, "triangles");
+            return tokens.skip(triangles * indices, "triangles");
         }
         self.mesh.new_shape();
         for _ in 0..triangles {
             let mut index = |count| -> Result<[usize; 3], Fault> {
-                Ok([words.index(count, "m")?, words.index(count, "m")?, words.index(count, "m")?])
+                Ok([tokens.index(count, "m")?, tokens.index(count, "m")?, tokens.index(count, "m")?])
             };
             let corners = index(count)?;
             let given = normal_count.map(&mut index).transpose()?;
@@ -159,7 +159,7 @@ impl Reader {
             let mut vertices = [0; 3];
             for (corner, vertex) in vertices.iter_mut().enumerate() {
                 let at = corners[corner];
-                // Without normals the vertices have none, and every triangle is shaded with its own
+                // Without normals in the file, vertices have none, and triangles have flat shading.
                 let normal = given.map_or(0, |given| given[corner]);
                 let direction = given.map_or(DVec3::ZERO, |given| normals[given[corner]]);
                 *vertex = self.mesh.indexed_vertex([at as u32, normal as u32], positions[at], direction)?;
@@ -170,23 +170,23 @@ impl Reader {
     }
 }
 
-fn vector(words: &mut Words, what: &str) -> Result<DVec3, Fault> {
-    words.numbers(what).map(DVec3::from)
+fn vector(tokens: &mut Tokenizer, context: &str) -> Result<DVec3, Fault> {
+    tokens.numbers(context).map(DVec3::from)
 }
 
-fn corner(words: &mut Words, what: &str) -> Result<Corner, Fault> {
-    Ok((vector(words, what)?, vector(words, what)?))
+fn corner(tokens: &mut Tokenizer, context: &str) -> Result<Corner, Fault> {
+    Ok((vector(tokens, context)?, vector(tokens, context)?))
 }
 
-/// So many of something; the count has been held against the file.
+/// Reads `count` values; the count has been compared with the size of the file.
 fn read<T>(count: usize, one: impl FnMut() -> Result<T, Fault>) -> Result<Vec<T>, Fault> {
     std::iter::repeat_with(one).take(count).collect()
 }
 
-/// So many vectors, or none if they are not wanted.
-fn vectors(count: usize, words: &mut Words, what: &str, wanted: bool) -> Result<Vec<DVec3>, Fault> {
+/// Reads `count` vectors; skips them unless they are `wanted`.
+fn vectors(count: usize, tokens: &mut Tokenizer, context: &str, wanted: bool) -> Result<Vec<DVec3>, Fault> {
     if !wanted {
-        return words.skip(count * 3, what).map(|()| Vec::new());
+        return tokens.skip(count * 3, context).map(|()| Vec::new());
     }
-    read(count, || vector(words, what))
+    read(count, || vector(tokens, context))
 }

@@ -1,5 +1,5 @@
-//! Keyframes between their keys: Kochanek-Bartels splines (Kochanek and Bartels 1984, for keys that are not equally
-//! spaced), and squad on quaternions with the same multipliers (Shoemake 1987).
+//! Interpolation of keys: Kochanek-Bartels splines (Kochanek and Bartels 1984, for unequally spaced keys), and squad on
+//! quaternions with the same tangents (Shoemake 1987).
 
 use glam::{DQuat, DVec3};
 
@@ -13,15 +13,15 @@ pub struct Key<T> {
     pub bias: f64,
 }
 
-/// A key's value at a time.
+/// Interpolation of a sequence of keys.
 pub trait Spline {
     type Value;
-    /// The value at `time`, held at the second key before it and at the last but one behind it: the first and the last
-    /// only shape the tangents. There are four keys at least, in order of time.
+    /// The value at `time`. It is constant before the second key and after the last but one: the first and the last key
+    /// only define tangents. There must be at least four keys, in order of time.
     fn at(&self, time: f64) -> Self::Value;
 }
 
-/// Where a time lies: index of the key before and the share of the way to the next, 0 to 1.
+/// The segment that contains a time: the index of the key before it, and the share of the way to the next key, 0 to 1.
 fn locate<T>(keys: &[Key<T>], time: f64) -> (usize, f64) {
     let (first, last) = (1, keys.len() - 2);
     let before = keys[..=last].partition_point(|key| key.time <= time).saturating_sub(1).max(first);
@@ -32,8 +32,9 @@ fn locate<T>(keys: &[Key<T>], time: f64) -> (usize, f64) {
     (before, if length > 0.0 { ((time - keys[before].time) / length).clamp(0.0, 1.0) } else { 0.0 })
 }
 
-/// Factors of the tangents between keys 1 and 2 of four: of the steps 0 to 1 and 1 to 2 in the tangent that leaves key
-/// 1, and of the steps 2 to 3 and 1 to 2 in the tangent that reaches key 2.
+/// Factors of the two tangents of the segment from key 1 to key 2 of four keys. `leaving` has the factors of the
+/// differences 0 to 1 and 1 to 2 in the tangent at key 1, `reaching` those of the differences 2 to 3 and 1 to 2 in the
+/// tangent at key 2.
 struct Factors {
     leaving: [f64; 2],
     reaching: [f64; 2],
@@ -42,7 +43,7 @@ struct Factors {
 impl Factors {
     fn new<T>(keys: &[Key<T>]) -> Factors {
         let [k0, k1, k2, k3] = [&keys[0], &keys[1], &keys[2], &keys[3]];
-        // Unequal spacing: a tangent is scaled by the share that its interval has in the two around its key
+        // For unequally spaced keys, a tangent is scaled by the segment's share of the two intervals around its key.
         let span = k2.time - k1.time;
         let share = |around: f64| if around > 0.0 { span / around } else { 0.0 };
         let leaving = share(k2.time - k0.time) * (1.0 - k1.tension);
@@ -81,27 +82,27 @@ impl Spline for [Key<DVec3>] {
     }
 }
 
-/// A key's rotation.
+/// The rotation of a key.
 #[derive(Clone, Copy, Debug)]
-pub struct Turn {
-    /// As the file gives it.
+pub struct Rotation {
+    /// The quaternion with the sign that the file gives it.
     given: DQuat,
-    /// On the side of the key before it, so that the angle between the two is acute.
+    /// The quaternion with the sign at which its angle to the previous key's is acute.
     aligned: DQuat,
 }
 
-impl Turn {
-    /// A rotation that follows another, or none.
-    pub fn new(given: DQuat, before: Option<&Turn>) -> Turn {
+impl Rotation {
+    /// The rotation of the key that follows `before`.
+    pub fn new(given: DQuat, before: Option<&Rotation>) -> Rotation {
         let obtuse = before.is_some_and(|before| before.aligned.dot(given) < 0.0);
-        Turn { given, aligned: if obtuse { -given } else { given } }
+        Rotation { given, aligned: if obtuse { -given } else { given } }
     }
 }
 
-/// The benchmark's own code turns a key to the side of the one before it when the curve first reaches it as its end: so
-/// the key behind the end still is as the file gives it. Its tangent is the long way around then, which shows in the
-/// robots' camera, and has to stay.
-impl Spline for [Key<Turn>] {
+/// BART's own code aligns the sign of a key with the previous one when the curve first reaches the key as the end of a
+/// segment. The key after the segment's end therefore still has the sign of the file, and the tangent may take the
+/// longer arc. The camera of the scene `robots` depends on this.
+impl Spline for [Key<Rotation>] {
     type Value = DQuat;
 
     fn at(&self, time: f64) -> DQuat {
@@ -122,14 +123,14 @@ impl Spline for [Key<Turn>] {
     }
 }
 
-/// The logarithm of the rotation from one to the other: half the angle times the axis.
+/// The logarithm of the rotation between two quaternions: the axis times half the angle.
 fn step(from: DQuat, to: DQuat) -> DVec3 {
     let turn = from.inverse() * to;
     let sine = turn.xyz().length();
     if sine < 1e-12 { DVec3::ZERO } else { turn.xyz() * (sine.atan2(turn.w) / sine) }
 }
 
-/// The inverse of the logarithm.
+/// The quaternion of which `v` is the logarithm.
 fn exp(v: DVec3) -> DQuat {
     let angle = v.length();
     if angle < 1e-12 {
@@ -139,7 +140,7 @@ fn exp(v: DVec3) -> DQuat {
     DQuat::from_xyzw(part.x, part.y, part.z, angle.cos())
 }
 
-/// Spherical interpolation along the arc from `a` to `b`, whichever of the two arcs that is.
+/// Spherical linear interpolation from `a` to `b`, along the shorter or the longer arc, as their signs demand.
 fn slerp(a: DQuat, b: DQuat, u: f64) -> DQuat {
     let angle = a.dot(b).clamp(-1.0, 1.0).acos();
     let sine = angle.sin();
@@ -163,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn the_curve_passes_through_its_keys_and_stands_still_outside() {
+    fn the_curve_passes_through_its_keys_and_is_constant_outside() {
         let keys = xs(&[(0.0, 9.0), (1.0, 1.0), (2.0, 5.0), (4.0, 2.0), (5.0, 9.0)]);
         for (time, x) in [(-7.0, 1.0), (1.0, 1.0), (2.0, 5.0), (4.0, 2.0), (99.0, 2.0), (f64::MIN, 1.0)] {
             assert_eq!(keys.as_slice().at(time).x, x, "at {time}");
@@ -179,15 +180,16 @@ mod tests {
         }
     }
 
-    /// By hand: P = 0, 0, 1, 1 at times 0, 1, 2, 4. Leaving: 2 (2-1)/(2-0) / 2 = 1/2 of each step: 0.5 * (0 + 1) = 0.5.
-    /// Reaching: 2 (2-1)/(4-1) / 2 = 1/3: 1/3 * (0 + 1). At u = 1/2 Hermite's weights are 1/2, 1/2, 1/8, -1/8.
+    /// Computed by hand: P = 0, 0, 1, 1 at times 0, 1, 2, 4. The leaving tangent has 2 (2-1)/(2-0) / 2 = 1/2 of each
+    /// difference: 0.5 * (0 + 1) = 0.5. The reaching tangent has 2 (2-1)/(4-1) / 2 = 1/3: 1/3 * (0 + 1). At u = 1/2
+    /// Hermite's weights are 1/2, 1/2, 1/8, -1/8.
     #[test]
     fn tangents_follow_the_spacing_of_the_keys() {
         let mut keys = xs(&[(0.0, 0.0), (1.0, 0.0), (2.0, 1.0), (4.0, 1.0)]);
         let expected = 0.5 + 0.5 / 8.0 - 1.0 / 3.0 / 8.0;
         assert!((keys.as_slice().at(1.5).x - expected).abs() < 1e-12);
-        // Full tension: no tangents. Continuity -1: only the step of the curve's own piece, twice. Bias 1: only the step
-        // behind, twice for the tangent that leaves.
+        // Tension 1 gives no tangents. Continuity -1 gives twice the difference of the segment itself. Bias 1 gives, in
+        // the leaving tangent, twice the difference of the segment before.
         keys[1].tension = 1.0;
         keys[2].tension = 1.0;
         assert!((keys.as_slice().at(1.5).x - 0.5).abs() < 1e-12);
@@ -200,11 +202,11 @@ mod tests {
     }
 
     #[test]
-    fn an_even_turn_around_one_axis_stays_even_and_takes_the_short_way() {
+    fn a_uniform_rotation_stays_uniform_and_takes_the_shorter_arc() {
         let turn = |degrees: f64| DQuat::from_axis_angle(DVec3::Y, degrees.to_radians());
-        let mut keys: Vec<Key<Turn>> = Vec::new();
+        let mut keys: Vec<Key<Rotation>> = Vec::new();
         for (i, value) in [turn(0.0), turn(80.0), -turn(160.0), turn(240.0)].into_iter().enumerate() {
-            let value = Turn::new(value, keys.last().map(|last| &last.value));
+            let value = Rotation::new(value, keys.last().map(|last| &last.value));
             keys.push(key(i as f64, value));
         }
         for i in 0..=10 {

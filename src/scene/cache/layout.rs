@@ -1,39 +1,39 @@
-//! How a cache lies in its file.
+//! The layout of a cache file.
 
 use crate::math::Vertex;
 use crate::scene::{Light, MAX_ELEMENTS, Material, Pose, Triangle};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
-/// Version of the layout.
+/// Version of the layout; raised whenever the layout changes.
 pub const FORMAT: u32 = 5;
 
-/// What a cache begins with.
+/// The first bytes of a cache.
 pub const MAGIC: [u8; 8] = *b"RTBSCENE";
 
-/// A hash of the readers' source, from `build/main.rs`.
+/// A hash of the readers' source code, computed by `build/main.rs`.
 const READERS: &str = env!("RTBENCH_READERS");
 
-/// Most bytes of texts: names and warnings.
+/// The largest size of the JSON part in bytes.
 const MAX_TEXT: u64 = 1 << 24;
 
-/// What a cache begins with.
+/// The header of a cache, at offset 0 of the file.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 pub struct Header {
-    /// [`MAGIC`].
+    /// Always [`MAGIC`].
     pub magic: [u8; 8],
-    /// [`FORMAT`].
+    /// Always [`FORMAT`].
     pub format: u32,
-    /// Vertical, degrees; of no meaning without poses.
+    /// Vertical field of view of the camera in degrees; undefined if there are no poses.
     pub field_of_view: f32,
-    /// The hash of the readers' source, as text.
+    /// The hash of the readers' source code, hexadecimal.
     pub readers: [u8; 16],
-    /// XXH3 of this header, with zeros here, and of the XXH3 of every piece of every part.
+    /// XXH3 of this header (with zeros in this field) and of the XXH3 hashes of all pieces of all parts.
     pub checksum: [u8; 16],
-    /// XXH3 of what is the scene's: equal for equal scenes, whatever and whenever they were made from.
+    /// XXH3 of the scene alone: equal for equal scenes, independent of their source files and of the time.
     pub content: [u8; 16],
-    // Numbers of elements; of the text, of bytes.
+    // Numbers of elements; of bytes for the text.
     pub vertices: u64,
     pub triangles: u64,
     pub materials: u64,
@@ -41,18 +41,18 @@ pub struct Header {
     pub poses: u64,
     pub text: u64,
     pub background: [f32; 3],
-    /// The scene's placement.
+    /// Exponent and offset of the scene's placement.
     pub exponent: i32,
     pub offset: [f64; 3],
-    /// Triangles without area.
+    /// Number of triangles without area.
     pub degenerate: u64,
 }
 
-/// A pose, with everything in double precision.
+/// A pose in the file: time, position, direction and up, in double precision.
 pub type RawPose = [f64; 10];
 
 impl Header {
-    /// Number of elements and bytes of one, part by part.
+    /// For each part, the number of its elements and the size of an element in bytes.
     pub fn parts(&self) -> [(u64, usize); 6] {
         [
             (self.vertices, size_of::<Vertex>()),
@@ -64,7 +64,7 @@ impl Header {
         ]
     }
 
-    /// Bytes of the whole file; `None` if a number is beyond what a scene may have.
+    /// Size of the whole file in bytes; `None` if a number exceeds the limits of a scene.
     pub fn total(&self) -> Option<u64> {
         let parts = self.parts();
         let fits = parts.iter().all(|&(count, _)| count <= MAX_ELEMENTS as u64) && self.text <= MAX_TEXT;
@@ -73,7 +73,7 @@ impl Header {
     }
 }
 
-/// What [`Header::readers`] must be.
+/// The value of [`Header::readers`] in caches that this program writes and accepts.
 pub fn readers() -> [u8; 16] {
     let mut text = [0; 16];
     let hash = READERS.as_bytes();
@@ -81,13 +81,13 @@ pub fn readers() -> [u8; 16] {
     text
 }
 
-/// A pose as it is stored.
+/// Converts a pose to its form in the file.
 pub fn raw_pose(pose: &Pose) -> RawPose {
     let [p, d, u] = [pose.position, pose.direction, pose.up].map(Vec3::as_dvec3);
     [pose.time, p.x, p.y, p.z, d.x, d.y, d.z, u.x, u.y, u.z]
 }
 
-/// A pose as it was stored.
+/// Converts a pose from its form in the file.
 pub fn pose(raw: &RawPose) -> Pose {
     let vector = |i: usize| Vec3::new(raw[i] as f32, raw[i + 1] as f32, raw[i + 2] as f32);
     Pose { time: raw[0], position: vector(1), direction: vector(4), up: vector(7) }

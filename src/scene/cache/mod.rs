@@ -1,16 +1,16 @@
-//! `.rtb`: a scene as loaded, in one binary file that is read in one go.
+//! `.rtb`: a cache of a loaded scene, in one binary file.
 //!
-//! A header of fixed size, then vertices, triangles, materials, lights and the camera's poses as they lie in memory, then
-//! the texts as JSON. All numbers are little-endian. A checksum (XXH3, 128 bits) covers all of it: against damage, not
-//! against forgers, who could hash as well, so that what was read is checked like any other file's content.
+//! The file is a header of fixed size, then vertices, triangles, materials, lights and the camera's poses as they are
+//! in memory, then the texts as JSON. All numbers are little-endian. A checksum (XXH3, 128 bits) covers the whole file.
+//! It detects damage, not forgery, so the content is checked like that of any other scene file.
 //!
-//! A cache is refused, never repaired. It is *foreign* without the magic bytes, *truncated* or *corrupt* where lengths or
-//! the checksum do not fit, and **stale** where loading the source again might give another scene:
+//! A cache that cannot be used is refused, never repaired. It is *foreign* without the magic bytes, *truncated* or
+//! *corrupt* if its length or its checksum is wrong, and **stale** if loading its source files again might give another
+//! scene:
 //! - the layout has another version ([`FORMAT`]);
-//! - it was written by a program with other readers: `build/main.rs` hashes their source, so nobody has to remember to raise a
-//!   number;
-//! - one of the files that it was made from, includes and libraries among them, is no longer what it was (`stale.rs`). They
-//!   are looked for where they lay as seen from the cache; if none of them is there, the cache stands for itself.
+//! - it was written by a program with other readers, of which `build/main.rs` hashes the source code;
+//! - one of its source files, includes and material libraries among them, has changed (`stale.rs`). Source files are
+//!   searched at their paths relative to the cache; if none of them exists, the cache is accepted without this check.
 
 mod layout;
 mod pages;
@@ -18,13 +18,13 @@ mod parts;
 mod stale;
 
 use super::extent::Extent;
-use super::sources::{self, Kind, Source};
+use super::sources::{self, SourceFile, SourceKind};
 use super::{Light, Material, Options, Placement, Pose, Scene, SceneCamera, Triangle, load_in};
 use crate::error::{Error, Result};
 use crate::math::Vertex;
 use bytemuck::Zeroable;
 use glam::{DVec3, Vec3};
-pub use layout::FORMAT;
+use layout::FORMAT;
 use layout::{Header, MAGIC, RawPose, pose, raw_pose, readers};
 use parts::{Checksum, Parts};
 use serde::{Deserialize, Serialize};
@@ -32,40 +32,40 @@ use std::fs::File;
 use std::io::{ErrorKind, Read, Write};
 use std::path::Path;
 
-/// The extension of caches.
+/// The file extension of caches.
 pub const EXTENSION: &str = "rtb";
 
-/// The texts of a scene.
+/// The last part of a cache, stored as JSON.
 #[derive(Serialize, Deserialize)]
 struct Texts {
     name: String,
     camera_path: Option<String>,
     warnings: Vec<String>,
-    /// What the scene was made from.
+    /// The files that the scene was read from.
     sources: Vec<stale::Stored>,
 }
 
-/// What a scene was made from; nothing for a built-in scene.
+/// The files that a scene was read from; empty for a built-in scene.
 #[derive(Clone, Debug, Default)]
-pub struct Sources(Vec<Source>);
+pub struct Sources(Vec<SourceFile>);
 
 impl Sources {
-    /// The files, and names where none was found.
+    /// The paths of all files, including those that were searched and did not exist.
     pub fn paths(&self) -> impl Iterator<Item = &Path> {
         self.0.iter().map(|source| source.path.as_path())
     }
 }
 
-/// Loads a scene as [`load_in`] does, and notes what it is made from.
+/// Loads a scene as [`load_in`] does, and records its source files.
 ///
 /// # Errors
 /// Those of [`load_in`].
-pub fn load(what: &str, folder: Option<&Path>) -> Result<(Scene, Sources)> {
-    let (scene, sources) = sources::record(true, || load_in(what, folder));
+pub fn load(spec: &str, folder: Option<&Path>) -> Result<(Scene, Sources)> {
+    let (scene, sources) = sources::record(true, || load_in(spec, folder));
     Ok((scene?, Sources(sources)))
 }
 
-/// Writes a scene and what it came from. The file is there as a whole or not at all.
+/// Writes a scene and its source files' states to a cache. The file is replaced atomically.
 ///
 /// # Errors
 /// [`Error::Output`] if the cache cannot be written.
@@ -124,16 +124,16 @@ pub fn write(scene: &Scene, sources: &Sources, path: &Path) -> Result<()> {
         std::fs::rename(&part, path)
     })();
     written.map_err(|e| {
-        // What was begun is of no use; that it could not be removed either says nothing new.
+        // The partial file is useless; an error while removing it adds nothing to the first one.
         let _ = std::fs::remove_file(&part);
         Error::output(path, e)
     })
 }
 
-/// Which of the parts the texts are: the last.
+/// Index of the texts among the parts; they are the last.
 const TEXTS: usize = 5;
 
-/// The hash of a scene: of its name, background, field of view and placement, and of all parts but the texts.
+/// [`Header::content`]: the hash of name, background, field of view, placement, and all parts except the texts.
 fn content(checksum: &Checksum, header: &Header, name: &str) -> [u8; 16] {
     let mut instead = bytemuck::bytes_of(&header.background).to_vec();
     instead.extend(header.field_of_view.to_le_bytes());
@@ -143,8 +143,8 @@ fn content(checksum: &Checksum, header: &Header, name: &str) -> [u8; 16] {
     checksum.with(&instead)
 }
 
-/// Makes the checksum right, and the readers ours, of a cache that somebody has changed: for tests of what lies behind
-/// those checks. What is no cache, by its lengths, stays as it is.
+/// Sets the checksum and [`Header::readers`] of a modified cache to valid values, so that tests reach the checks that
+/// follow. Bytes of which the length does not fit their header are left unchanged.
 pub fn reseal(bytes: &mut [u8]) {
     let Some((start, parts)) = bytes.split_at_mut_checked(size_of::<Header>()) else { return };
     let mut header: Header = bytemuck::pod_read_unaligned(start);
@@ -163,11 +163,11 @@ pub fn reseal(bytes: &mut [u8]) {
     start.copy_from_slice(bytemuck::bytes_of(&header));
 }
 
-/// Reads a cache: a scene that has gone through all checks. It has the placement that it was written with, or the one
-/// that is wanted.
+/// Reads a cache and checks the scene. The scene keeps the placement that it was written with, unless `options.offset`
+/// asks for another.
 ///
 /// # Errors
-/// [`Error::Input`]: no cache, or one that is stale, truncated or corrupt.
+/// [`Error::Input`] if the file is not a cache, or is stale, truncated or corrupt.
 pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     let fault = |problem: &str, hint: &str| Error::file(path, None, problem, hint);
     let again = "make it again with `rtbench scenes convert`";
@@ -176,7 +176,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
         ErrorKind::UnexpectedEof => fault("the cache is truncated", again),
         _ => fault(&format!("cannot be read: {e}"), "check the path and its permissions"),
     };
-    // Before it is opened: a pipe would wait for whoever writes into it.
+    // This is checked before opening, because opening a pipe waits for a writer.
     if !std::fs::metadata(path).map_err(unreadable)?.is_file() {
         return Err(fault("not a regular file", "name a file that holds a scene"));
     }
@@ -197,14 +197,14 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
         return Err(fault(&problem, again));
     }
     if header.readers != readers() {
-        return Err(fault("the cache is stale: it was made by another version of rtbench's readers", again));
+        return Err(fault("the cache is stale: it was written by another version of rtbench's readers", again));
     }
-    // Lengths are held against the file before anything is allocated from them.
+    // Lengths are compared with the file's size before memory is allocated for them.
     match header.total() {
-        None => return Err(fault("the cache is corrupt: its header asks for more than a scene may have", again)),
+        None => return Err(fault("the cache is corrupt: its header exceeds the limits of a scene", again)),
         Some(total) if total > metadata.len() => return Err(fault("the cache is truncated", again)),
         Some(total) if total < metadata.len() => {
-            return Err(fault("the cache is corrupt: there are bytes behind its end", again));
+            return Err(fault("the cache is corrupt: there are bytes after its end", again));
         }
         Some(_) => {}
     }
@@ -223,7 +223,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     let texts: Texts =
         serde_json::from_slice(&text).map_err(|_| fault("the cache is corrupt: its texts cannot be read", again))?;
     let sources = stale::restore(texts.sources, &stale::folder_of(path))
-        .ok_or_else(|| fault("the cache is corrupt: it names its sources in a way that it should not", again))?;
+        .ok_or_else(|| fault("the cache is corrupt: the path of a source file is not relative", again))?;
     if let Some((source, fate)) = stale::changed(&sources) {
         return Err(fault(&format!("the cache is stale: {} {fate}", source.display()), again));
     }
@@ -232,7 +232,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     let sound = |pose: &Pose| pose.time.is_finite() && pose.position.is_finite() && pose.direction.is_normalized();
     let camera_works = field_of_view > 0.0 && field_of_view < 180.0 && frames.iter().all(sound);
     if !(frames.is_empty() || camera_works) {
-        return Err(fault("the cache is corrupt: its camera is none", again));
+        return Err(fault("the cache is corrupt: its camera is not valid", again));
     }
     let placement = Placement { offset: DVec3::from(header.offset), exponent: header.exponent };
     if !placement.is_sound() {
@@ -255,11 +255,11 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     if let Some(offset) = options.offset {
         scene.move_to(Placement { offset, exponent: 0 });
     }
-    // Whoever makes something from this cache makes it from the cache's sources as well.
+    // A scene that is read from this cache depends on the cache's source files as well.
     sources.into_iter().for_each(|source| sources::add(|_| source));
-    sources::add(|_| Source {
-        path: sources::whole(path),
-        kind: Kind::Cache,
+    sources::add(|_| SourceFile {
+        path: sources::resolve_folder(path),
+        kind: SourceKind::Cache,
         bytes: metadata.len(),
         modified: None,
         changed: None,

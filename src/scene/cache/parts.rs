@@ -1,4 +1,4 @@
-//! The parts of a cache one behind the other: read, hashed and looked through in pieces that stay in the processor's cache.
+//! Reads, hashes and checks the parts of a cache file one after another, in pieces that fit into the processor's cache.
 
 use super::pages;
 use crate::scene::extent::Extent;
@@ -8,22 +8,22 @@ use std::fs::File;
 use std::io;
 use twox_hash::XxHash3_128;
 
-/// Bytes of a piece, rounded down to whole elements.
+/// Size of a piece in bytes; it is rounded down to whole elements.
 const PIECE: usize = 1 << 20;
 
-/// Elements in a piece, of which one has so many bytes.
+/// Number of elements of `size` bytes in a piece.
 fn piece(size: usize) -> usize {
     PIECE / size
 }
 
-/// A checksum in the making: the hashes of the pieces.
+/// A checksum under construction: the hashes of the pieces so far.
 #[derive(Default)]
 pub struct Checksum {
     hashes: Vec<u8>,
 }
 
 impl Checksum {
-    /// Adds the bytes of a part whose elements have so many each.
+    /// Adds the bytes of a part with elements of `size` bytes.
     pub fn add(&mut self, part: &[u8], size: usize) {
         part.chunks(piece(size) * size).for_each(|piece| self.add_hash(XxHash3_128::oneshot(piece)));
     }
@@ -32,45 +32,44 @@ impl Checksum {
         self.hashes.extend(hash.to_le_bytes());
     }
 
-    /// The checksum of these bytes and of what was added so far.
+    /// The checksum of `start` and of everything that was added so far.
     pub fn with(&self, start: &[u8]) -> [u8; 16] {
         XxHash3_128::oneshot(&[start, &self.hashes].concat()).to_le_bytes()
     }
 }
 
-/// Reads parts.
+/// Reads the parts of a cache in their order.
 pub struct Parts<'a> {
     pub file: &'a File,
-    /// Where the next part begins.
+    /// Offset of the next part in the file, in bytes.
     pub at: u64,
     pub checksum: Checksum,
-    /// Of all that has been read.
+    /// Union of the extents of all parts read so far.
     pub extent: Extent,
 }
 
 impl Parts<'_> {
-    /// The next `count` elements, straight into their memory, and what `look` says of them. Pieces are worked on by all
-    /// threads.
-    pub fn next<T: Pod + Send + Sync>(&mut self, count: u64, look: fn(&[T]) -> Extent) -> io::Result<Vec<T>> {
+    /// Reads the next `count` elements on all threads, and adds their `extent_of` to [`Parts::extent`].
+    pub fn next<T: Pod + Send + Sync>(&mut self, count: u64, extent_of: fn(&[T]) -> Extent) -> io::Result<Vec<T>> {
         let mut elements: Vec<T> = bytemuck::zeroed_vec(count as usize);
         pages::prefer_large(bytemuck::cast_slice_mut(&mut elements));
         let piece = piece(size_of::<T>());
         let (start, step) = (self.at, (piece * size_of::<T>()) as u64);
         let read = |(i, piece): (usize, &mut [T])| {
             read_exact_at(self.file, bytemuck::cast_slice_mut(piece), start + i as u64 * step)?;
-            Ok((XxHash3_128::oneshot(bytemuck::cast_slice(piece)), look(piece)))
+            Ok((XxHash3_128::oneshot(bytemuck::cast_slice(piece)), extent_of(piece)))
         };
         let pieces = elements.par_chunks_mut(piece).enumerate().map(read);
         for (hash, extent) in pieces.collect::<io::Result<Vec<_>>>()? {
             self.checksum.add_hash(hash);
-            self.extent = self.extent.and(extent);
+            self.extent = self.extent.union(extent);
         }
         self.at += count * size_of::<T>() as u64;
         Ok(elements)
     }
 }
 
-/// Fills the buffer from a place in the file, without regard to the handle's own position, which threads share.
+/// Fills the buffer from an offset in the file. It does not use the handle's position, which threads share.
 #[cfg(unix)]
 fn read_exact_at(file: &File, buffer: &mut [u8], at: u64) -> io::Result<()> {
     std::os::unix::fs::FileExt::read_exact_at(file, buffer, at)

@@ -1,41 +1,41 @@
-//! What a cache is made from, as it stands in the cache, and whether that is still so.
+//! The source files of a cache as stored in it, and the check whether they have changed.
 
 use super::layout::Header;
 use crate::scene::load;
-use crate::scene::sources::{self, Kind, Source};
+use crate::scene::sources::{self, SourceFile, SourceKind};
 use bytemuck::Zeroable;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::Read;
 use std::path::{Component, Path, PathBuf};
 
-/// A [`Source`] in a cache.
+/// A [`SourceFile`] as stored in a cache.
 #[derive(Serialize, Deserialize)]
 pub struct Stored {
-    /// Seen from the cache's folder, with `/`: cache and sources may be moved together, and no cache can name another
-    /// computer.
+    /// Path relative to the cache's folder, with `/`. Cache and sources can be moved together, and a cache cannot name
+    /// another computer.
     path: String,
-    kind: Kind,
+    kind: SourceKind,
     bytes: u64,
     modified: Option<u64>,
     changed: Option<u64>,
     hash: String,
 }
 
-/// The sources of a cache at `cache`. Left out are the cache itself, if it is written over what it was made from, and paths
-/// that cannot be written down (another drive, no UTF-8).
-pub fn store(sources: &[Source], cache: &Path) -> Vec<Stored> {
-    let cache = sources::whole(cache);
+/// Converts the sources of the cache at `cache` to their stored form. It omits the cache itself, if the cache replaces
+/// a file that it was made from, and paths that have no relative form in UTF-8 (as those on another drive).
+pub fn store(sources: &[SourceFile], cache: &Path) -> Vec<Stored> {
+    let cache = sources::resolve_folder(cache);
     let folder = cache.parent().unwrap_or(Path::new(""));
-    let stored = |source: &Source| {
-        let Source { kind, bytes, modified, changed, .. } = *source;
+    let stored = |source: &SourceFile| {
+        let SourceFile { kind, bytes, modified, changed, .. } = *source;
         let path = relative(folder, &source.path)?;
         Some(Stored { path, kind, bytes, modified, changed, hash: source.hash.clone() })
     };
     sources.iter().filter(|source| source.path != cache).filter_map(stored).collect()
 }
 
-/// The way from a folder to a file, both without links.
+/// The relative path from a folder to a file; both paths must be free of links.
 fn relative(folder: &Path, file: &Path) -> Option<String> {
     let (from, to): (Vec<_>, Vec<_>) = (folder.components().collect(), file.components().collect());
     let shared = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
@@ -44,13 +44,14 @@ fn relative(folder: &Path, file: &Path) -> Option<String> {
     }
     let up = std::iter::repeat_n(Some(".."), from.len() - shared);
     let down = to[shared..].iter().map(|part| part.as_os_str().to_str());
-    // A folder may be that of the cache itself.
+    // The path is empty if the source is the cache's folder.
     let way = up.chain(down).collect::<Option<Vec<&str>>>()?.join("/");
     Some(if way.is_empty() { ".".into() } else { way })
 }
 
-/// The sources of a cache in `folder`; `None` if one of them does not lie where [`store`] would have found it.
-pub fn restore(stored: Vec<Stored>, folder: &Path) -> Option<Vec<Source>> {
+/// Converts the stored sources of a cache in `folder` back; `None` if a path is not one that [`store`] could have
+/// written.
+pub fn restore(stored: Vec<Stored>, folder: &Path) -> Option<Vec<SourceFile>> {
     let restored = |stored: Stored| {
         let Stored { path, kind, bytes, modified, changed, hash } = stored;
         let way = Path::new(&path);
@@ -66,31 +67,33 @@ pub fn restore(stored: Vec<Stored>, folder: &Path) -> Option<Vec<Source>> {
                 _ => {}
             }
         }
-        Some(Source { path: place, kind, bytes, modified, changed, hash })
+        Some(SourceFile { path: place, kind, bytes, modified, changed, hash })
     };
     stored.into_iter().map(restored).collect()
 }
 
-/// The first source that is no longer what it was, and what happened to it. Where none of the files is there, nothing can be
-/// told, and the cache stands for itself.
-pub fn changed(sources: &[Source]) -> Option<(&Path, &'static str)> {
-    let here = |source: &&Source| matches!(source.kind, Kind::File | Kind::Folder) && source.path.exists();
-    let alone = sources.iter().find(here).is_none();
-    let fate = |source: &Source| match (source.kind, source.path.exists()) {
-        (Kind::Absent, true) if !alone => Some("is there now"),
-        (Kind::Absent, _) => None,
-        (Kind::Cache, false) => None,
-        (_, false) => (!alone).then_some("is gone"),
-        (Kind::File, true) => (!is_same_file(source)).then_some("has changed"),
-        (Kind::Folder, true) => (!is_same_folder(source)).then_some("has other files"),
-        (Kind::Cache, true) => (content(&source.path).as_ref() != Some(&source.hash)).then_some("has changed"),
+/// The first source that has changed, with a description of the change. If none of the source files exists, changes
+/// cannot be detected, and the result is `None`.
+pub fn changed(sources: &[SourceFile]) -> Option<(&Path, &'static str)> {
+    let exists =
+        |source: &&SourceFile| matches!(source.kind, SourceKind::File | SourceKind::Folder) && source.path.exists();
+    let alone = sources.iter().find(exists).is_none();
+    let change = |source: &SourceFile| match (source.kind, source.path.exists()) {
+        (SourceKind::Absent, true) if !alone => Some("exists now"),
+        (SourceKind::Absent, _) => None,
+        (SourceKind::Cache, false) => None,
+        (_, false) => (!alone).then_some("no longer exists"),
+        (SourceKind::File, true) => (!is_same_file(source)).then_some("has changed"),
+        (SourceKind::Folder, true) => (!is_same_folder(source)).then_some("has other files"),
+        (SourceKind::Cache, true) => (content(&source.path).as_ref() != Some(&source.hash)).then_some("has changed"),
     };
-    sources.iter().find_map(|source| Some((source.path.as_path(), fate(source)?)))
+    sources.iter().find_map(|source| Some((source.path.as_path(), change(source)?)))
 }
 
-/// A file of the same length and times is taken for the same; one of another time is hashed: copies and checkouts change
-/// the time of modification alone, renaming and other permissions the system's alone.
-fn is_same_file(source: &Source) -> bool {
+/// True if the file's content is unchanged. If length and both times are equal, the content is assumed to be equal;
+/// otherwise it is hashed, since copies and checkouts change the time of modification without changing the content, and
+/// renaming and permissions change the time that the system notes.
+fn is_same_file(source: &SourceFile) -> bool {
     let Ok(metadata) = std::fs::metadata(&source.path) else { return false };
     if !metadata.is_file() || metadata.len() != source.bytes {
         return false;
@@ -101,7 +104,7 @@ fn is_same_file(source: &Source) -> bool {
     untouched || hash(&source.path).is_some_and(|hash| hash == source.hash)
 }
 
-fn is_same_folder(source: &Source) -> bool {
+fn is_same_folder(source: &SourceFile) -> bool {
     load::files_of_folder(&source.path).is_ok_and(|files| sources::names_hash(&files) == source.hash)
 }
 
@@ -111,7 +114,7 @@ fn hash(path: &Path) -> Option<String> {
     Some(hasher.finalize().to_hex().to_string())
 }
 
-/// What the cache at `path` says of the scene in it.
+/// The content hash in the header of the cache at `path`, hexadecimal.
 fn content(path: &Path) -> Option<String> {
     let mut header = Header::zeroed();
     if !std::fs::metadata(path).ok()?.is_file() {
@@ -121,12 +124,12 @@ fn content(path: &Path) -> Option<String> {
     Some(hexadecimal(&header))
 }
 
-/// The hash of a cache's scene, as a [`Source`] has it.
+/// The content hash of a cache, hexadecimal.
 pub fn hexadecimal(header: &Header) -> String {
     header.content.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Where a cache's sources are counted from.
+/// The folder that the stored paths of a cache are relative to.
 pub fn folder_of(cache: &Path) -> PathBuf {
-    sources::whole(cache).parent().map(Path::to_owned).unwrap_or_default()
+    sources::resolve_folder(cache).parent().map(Path::to_owned).unwrap_or_default()
 }

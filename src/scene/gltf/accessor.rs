@@ -1,16 +1,17 @@
-//! Accessors: typed elements in buffers, every place checked before it is read.
+//! Reads accessors: typed elements in buffers. Every range is checked before it is read.
 
-use super::Fault;
+use super::Problem;
 use super::buffers::Buffers;
 use glam::Vec3;
 use gltf::Accessor;
 use gltf::accessor::{DataType, Dimensions};
 
-/// Elements that need no bytes (sparse ones over zeros) are believed up to this number, or the size of the buffers.
+/// The largest number of elements of a sparse accessor without a base view, which has no bytes for most elements,
+/// unless the buffers have more bytes than this.
 const FREE_ELEMENTS: usize = 1 << 16;
 
-/// Vectors of three floats.
-pub fn vectors(accessor: &Accessor, buffers: &Buffers) -> Result<Vec<Vec3>, Fault> {
+/// Reads vectors of three floats.
+pub fn vectors(accessor: &Accessor, buffers: &Buffers) -> Result<Vec<Vec3>, Problem> {
     if (accessor.dimensions(), accessor.data_type()) != (Dimensions::Vec3, DataType::F32) {
         return Err(fault(accessor, "must have three floats per element"));
     }
@@ -20,9 +21,9 @@ pub fn vectors(accessor: &Accessor, buffers: &Buffers) -> Result<Vec<Vec3>, Faul
     })
 }
 
-/// Refuses an accessor that has more elements than its bytes, or the file, can have. To be asked before memory is set aside
-/// for them.
-pub fn check(accessor: &Accessor, buffers: &Buffers) -> Result<(), Fault> {
+/// Refuses an accessor with more elements than its bytes, or the file's, can hold. Call this before allocating memory
+/// for the elements.
+pub fn check(accessor: &Accessor, buffers: &Buffers) -> Result<(), Problem> {
     let (size, count) = (accessor.size(), accessor.count());
     match accessor.view() {
         Some(view) => {
@@ -40,23 +41,23 @@ pub fn check(accessor: &Accessor, buffers: &Buffers) -> Result<(), Fault> {
 
 const BEYOND: &str = "reaches beyond its buffer view";
 
-/// The same for what must be indices.
-pub fn check_indices(accessor: &Accessor, buffers: &Buffers) -> Result<(), Fault> {
+/// Like [`check`], for an accessor of indices.
+pub fn check_indices(accessor: &Accessor, buffers: &Buffers) -> Result<(), Problem> {
     index(accessor)?;
     check(accessor, buffers)
 }
 
-/// Indices of one, two or four bytes.
-pub fn indices(accessor: &Accessor, buffers: &Buffers) -> Result<Vec<u32>, Fault> {
+/// Reads indices of one, two or four bytes.
+pub fn indices(accessor: &Accessor, buffers: &Buffers) -> Result<Vec<u32>, Problem> {
     let (size, one) = index(accessor)?;
     read(accessor, buffers, size, one)
 }
 
-/// How an index is read from its bytes.
+/// Converts the bytes of an index.
 type ReadIndex = fn(&[u8]) -> u32;
 
-/// Bytes of an index, and how it is read.
-fn index(accessor: &Accessor) -> Result<(usize, ReadIndex), Fault> {
+/// The size of an index in bytes, and its conversion.
+fn index(accessor: &Accessor) -> Result<(usize, ReadIndex), Problem> {
     if accessor.dimensions() != Dimensions::Scalar {
         return Err(fault(accessor, "must have one index per element"));
     }
@@ -80,12 +81,12 @@ fn index_u32(b: &[u8]) -> u32 {
     u32::from_le_bytes([b[0], b[1], b[2], b[3]])
 }
 
-fn fault(accessor: &Accessor, problem: &str) -> Fault {
+fn fault(accessor: &Accessor, problem: &str) -> Problem {
     (format!("accessor {} {problem}", accessor.index()), "export the file again")
 }
 
-/// All elements of `size` bytes; sparse ones replace those of the base, which is zero if there is none.
-fn read<T: Clone>(accessor: &Accessor, buffers: &Buffers, size: usize, one: fn(&[u8]) -> T) -> Result<Vec<T>, Fault> {
+/// Reads all elements of `size` bytes. Sparse elements replace those of the base; without a base view the base is zero.
+fn read<T: Clone>(accessor: &Accessor, buffers: &Buffers, size: usize, one: fn(&[u8]) -> T) -> Result<Vec<T>, Problem> {
     let count = accessor.count();
     let beyond = || fault(accessor, BEYOND);
     check(accessor, buffers)?;
@@ -111,7 +112,7 @@ fn read<T: Clone>(accessor: &Accessor, buffers: &Buffers, size: usize, one: fn(&
         let values = slots(value_bytes, values.offset(), value_view.stride(), size, sparse.count());
         for (place, value) in places.ok_or_else(beyond)?.zip(values.ok_or_else(beyond)?) {
             let element = elements.get_mut(index(place) as usize);
-            *element.ok_or_else(|| fault(accessor, "replaces an element that it does not have"))? = one(value);
+            *element.ok_or_else(|| fault(accessor, "replaces an element beyond its end"))? = one(value);
         }
     }
     Ok(elements)
@@ -130,7 +131,7 @@ fn slots(
         Some(last) => stride.checked_mul(last)?.checked_add(offset)?.checked_add(size)?,
         None => 0,
     };
-    // A stride of zero would make any number of elements out of nothing.
+    // A stride of zero would allow any number of elements in a few bytes.
     if end > bytes.len() || stride < size {
         return None;
     }

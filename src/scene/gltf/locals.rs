@@ -1,18 +1,18 @@
-//! Transforms of nodes in double precision. The crate (1.4.1) has them in single precision, which is too coarse for a
-//! node that is far from the origin.
+//! Local transforms of nodes in double precision. The crate (1.4.1) holds them in single precision, which is too coarse
+//! for a node far from the origin.
 
 use glam::{DMat4, DQuat, DVec3, Mat4};
 use gltf::Node;
 use serde::Deserialize;
 
-/// What the JSON says of nodes, as far as it is transforms.
+/// The transforms of all nodes in the JSON.
 #[derive(Default, Deserialize)]
 pub struct Locals {
     #[serde(default)]
     nodes: Vec<Local>,
 }
 
-/// The transform of a node; most have none.
+/// The properties of a node that define its transform; all are optional.
 #[derive(Deserialize)]
 struct Local {
     matrix: Option<Box<[f64; 16]>>,
@@ -21,16 +21,16 @@ struct Local {
     scale: Option<Box<[f64; 3]>>,
 }
 
-/// Memory of a matrix, the largest part of a transform, and what is lost around it.
+/// Upper bound of the memory of one property in bytes: that of a matrix, and the overhead of its allocation.
 const PER_PART: usize = size_of::<[f64; 16]>() + 16;
 
 impl Locals {
-    /// Reads the JSON. Of one that is not as it should be nothing is taken: the crate will say what is wrong with it.
+    /// Parses the JSON. If that fails the result is empty, and the crate reports the error.
     pub fn read(json: &[u8]) -> Locals {
         serde_json::from_slice(json).unwrap_or_default()
     }
 
-    /// Memory that they take.
+    /// Memory of the transforms in bytes.
     pub fn bytes(&self) -> usize {
         let parts = |local: &Local| {
             let Local { matrix, translation, rotation, scale } = local;
@@ -40,7 +40,7 @@ impl Locals {
         2 * size_of_val(self.nodes.as_slice()) + parts * PER_PART
     }
 
-    /// The transform of a node.
+    /// The transform from a node to its parent.
     pub fn of(&self, node: &Node) -> DMat4 {
         let Some(Local { matrix, translation, rotation, scale }) = self.nodes.get(node.index()) else {
             return Mat4::from_cols_array_2d(&node.transform().matrix()).as_dmat4();

@@ -1,16 +1,17 @@
 //! Metallic-roughness materials as Phong materials.
 //!
-//! | glTF | ours |
+//! | glTF | Phong |
 //! |---|---|
 //! | base colour c, metallic m | diffuse `c (1 - m)`, specular `F = 0.04 (1 - m) + c m`, ambient a tenth of c |
 //! | roughness r | exponent `2 / r^4 - 2`, 1 to 10,000 (the Blinn lobe as wide as a microfacet lobe of `alpha = r^2`) |
-//! | both | mirror with `F (1 - r)^2`, largest component, if m >= 0.5 and r <= 0.3: what is rougher is no mirror |
-//! | emissive factor | ambient at least as bright; [`crate::scene::lamps`] makes lights of it where there are no others |
+//! | both | reflectivity `F (1 - r)^2`, largest component, if m >= 0.5 and r <= 0.3; otherwise 0 |
+//! | emissive factor | ambient at least as bright; without other lights, [`crate::scene::lamps`] converts it to lights
+//! |
 
 use crate::scene::Material;
 use glam::Vec3;
 
-/// The material and the colour that it gives off.
+/// The Phong material and the emission of a material.
 pub fn convert(material: &gltf::Material) -> (Material, Vec3) {
     let pbr = material.pbr_metallic_roughness();
     let [r, g, b, _] = pbr.base_color_factor();
@@ -27,7 +28,8 @@ pub fn convert(material: &gltf::Material) -> (Material, Vec3) {
     (matt.shiny(specular, exponent, reflectivity), emission)
 }
 
-/// True if light goes through: not for the modes alone, which exporters write for opaque materials as well.
+/// True if the material is transparent. The alpha mode alone does not decide, because exporters also write it for
+/// opaque materials.
 pub fn is_transparent(material: &gltf::Material) -> bool {
     let pbr = material.pbr_metallic_roughness();
     let [.., alpha] = pbr.base_color_factor();
@@ -35,7 +37,7 @@ pub fn is_transparent(material: &gltf::Material) -> bool {
     through && material.alpha_mode() != gltf::material::AlphaMode::Opaque
 }
 
-/// True if a texture decides about the colour.
+/// True if the material's colour depends on a texture.
 pub fn has_texture(material: &gltf::Material) -> bool {
     let pbr = material.pbr_metallic_roughness();
     pbr.base_color_texture().is_some() || pbr.metallic_roughness_texture().is_some()

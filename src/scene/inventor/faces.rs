@@ -1,6 +1,6 @@
-//! Sets of faces, of whatever kind, as one face after another.
+//! Iterates over the faces of all kinds of face sets.
 
-use super::kind::Kind;
+use super::node_type::NodeType;
 use super::state::Binding;
 use super::state::Coordinates;
 use super::tree::{Field, Node};
@@ -12,9 +12,9 @@ use glam::DVec3;
 pub struct Corner {
     /// Index of its position.
     pub coordinate: usize,
-    /// Where it stands in the list of indices, ends of faces counted.
-    pub place: usize,
-    /// Where it stands among all corners.
+    /// Index of its entry in `coordIndex`, which also has entries for the ends of faces.
+    pub entry: usize,
+    /// Its number among all corners.
     pub number: usize,
 }
 
@@ -22,30 +22,30 @@ pub struct Corner {
 pub struct Face<'c> {
     /// The part that it belongs to.
     pub part: usize,
-    /// Where it stands among the faces of the file.
+    /// Its number among the faces of the file.
     pub number: usize,
-    /// Where it stands among those that are visited: a face of a mesh is visited as two triangles.
+    /// Its number among the visited faces; a face of a mesh is visited as two triangles.
     pub visit: usize,
     pub corners: &'c [Corner],
 }
 
-/// How corners make faces.
+/// The way in which corners are combined to faces.
 #[derive(Clone, Copy)]
 enum Layout {
     /// Every run of corners is a face.
     Polygons,
     /// Every run of corners is a strip of triangles.
     Strips,
-    /// All corners are a grid of so many columns.
+    /// All corners form a grid.
     Mesh { rows: usize, columns: usize },
 }
 
-/// Where runs of corners come from.
+/// The definition of the runs of corners.
 #[derive(Clone, Copy)]
 enum Runs<'t> {
-    /// Indices of coordinates; a negative one ends a run.
+    /// Indices of coordinates; a negative index ends a run.
     Indexed(&'t [f64]),
-    /// Numbers of coordinates, in their order; a negative one takes all that are left.
+    /// Numbers of consecutive coordinates; a negative number takes all remaining ones.
     Counted(&'t [f64]),
 }
 
@@ -53,7 +53,7 @@ enum Runs<'t> {
 pub struct Faces<'t> {
     layout: Layout,
     runs: Runs<'t>,
-    /// Of corners that have no indices, the first.
+    /// Index of the first coordinate, for runs without indices.
     start: usize,
     coordinates: Coordinates<'t>,
     clockwise: bool,
@@ -61,14 +61,14 @@ pub struct Faces<'t> {
     line: usize,
 }
 
-/// What sees the faces.
+/// A callback for faces.
 type Visit<'v> = &'v mut dyn FnMut(Face) -> Result<(), Fault>;
 
-/// What sees runs of corners with their numbers, and may turn them around.
+/// A callback for runs of corners with their numbers; it may reverse the corners.
 type VisitRun<'v> = &'v mut dyn FnMut(usize, &mut [Corner]) -> Result<(), Fault>;
 
 impl<'t> Faces<'t> {
-    /// The faces of a node that is a set of them.
+    /// The faces of a face set.
     pub fn of(node: &'t Node, coordinates: Coordinates<'t>, clockwise: bool) -> Result<Faces<'t>, Fault> {
         let start = node.integer("startIndex", 0)?;
         let Ok(start) = usize::try_from(start) else {
@@ -79,12 +79,12 @@ impl<'t> Faces<'t> {
             usize::try_from(size).map_err(|_| Fault::new(None, format!("{name}: {size} is negative"), ""))
         };
         let layout = match node.kind {
-            Kind::IndexedFaceSet | Kind::FaceSet => Layout::Polygons,
-            Kind::QuadMesh => Layout::Mesh { rows: size("verticesPerColumn")?, columns: size("verticesPerRow")? },
+            NodeType::IndexedFaceSet | NodeType::FaceSet => Layout::Polygons,
+            NodeType::QuadMesh => Layout::Mesh { rows: size("verticesPerColumn")?, columns: size("verticesPerRow")? },
             _ => Layout::Strips,
         };
         let (runs, field) = match node.kind {
-            Kind::IndexedFaceSet | Kind::IndexedTriangleStripSet => {
+            NodeType::IndexedFaceSet | NodeType::IndexedTriangleStripSet => {
                 (Runs::Indexed(node.numbers("coordIndex")?.unwrap_or(&[])), "coordIndex")
             }
             _ => (Runs::Counted(node.numbers("numVertices")?.unwrap_or(&[-1.0])), "numVertices"),
@@ -93,18 +93,18 @@ impl<'t> Faces<'t> {
         Ok(Faces { layout, runs, start, coordinates, clockwise, line })
     }
 
-    /// The position of a corner; it is one that was visited.
+    /// The position of a visited corner.
     pub fn position(&self, corner: &Corner) -> DVec3 {
         self.coordinates.get(corner.coordinate).unwrap_or_default()
     }
 
-    /// Visits all faces, always in the same order.
+    /// Visits all faces in file order.
     ///
     /// # Errors
-    /// An index is out of range, or what the visitor says.
+    /// An index is out of range; errors of the callback.
     pub fn visit(&self, visit: Visit) -> Result<(), Fault> {
         let mut visits = 0;
-        let mut turned = |part: usize, number: usize, corners: &mut [Corner]| {
+        let mut visit_face = |part: usize, number: usize, corners: &mut [Corner]| {
             if self.clockwise {
                 corners.reverse();
             }
@@ -113,14 +113,14 @@ impl<'t> Faces<'t> {
             Ok(())
         };
         match self.layout {
-            Layout::Polygons => self.runs(&mut |run, corners| turned(run, run, corners)),
+            Layout::Polygons => self.runs(&mut |run, corners| visit_face(run, run, corners)),
             Layout::Strips => {
                 let mut number = 0;
                 self.runs(&mut |part, corners| {
                     for (k, window) in corners.windows(3).enumerate() {
                         let [a, b, c] = [window[0], window[1], window[2]];
-                        // Every other triangle of a strip turns the other way
-                        turned(part, number, &mut if k % 2 == 0 { [a, b, c] } else { [b, a, c] })?;
+                        // Every other triangle of a strip has the opposite orientation.
+                        visit_face(part, number, &mut if k % 2 == 0 { [a, b, c] } else { [b, a, c] })?;
                         number += 1;
                     }
                     Ok(())
@@ -131,17 +131,17 @@ impl<'t> Faces<'t> {
                 if needed > self.coordinates.len() {
                     return Err(self.too_few(needed));
                 }
-                // Of one column, or none, any number of rows may be had for nothing
+                // With at most one column there are no faces, for any number of rows.
                 let rows = if columns > 1 { rows } else { 0 };
                 let corner = |row: usize, column: usize| self.plain(self.start + row * columns + column);
                 for row in 1..rows {
                     for column in 1..columns {
                         let [a, b] = [corner(row - 1, column - 1), corner(row, column - 1)];
                         let [c, d] = [corner(row - 1, column), corner(row, column)];
-                        // As in the strip that the format's library makes of a row
+                        // The diagonal is that of the reference implementation, which makes a strip of each row.
                         let number = (row - 1) * (columns - 1) + column - 1;
-                        turned(row - 1, number, &mut [a, b, c])?;
-                        turned(row - 1, number, &mut [c, b, d])?;
+                        visit_face(row - 1, number, &mut [a, b, c])?;
+                        visit_face(row - 1, number, &mut [c, b, d])?;
                     }
                 }
                 Ok(())
@@ -149,9 +149,9 @@ impl<'t> Faces<'t> {
         }
     }
 
-    /// A corner without indices.
+    /// A corner of a set without `coordIndex`.
     fn plain(&self, coordinate: usize) -> Corner {
-        Corner { coordinate, place: coordinate, number: coordinate }
+        Corner { coordinate, entry: coordinate, number: coordinate }
     }
 
     /// Visits all runs of corners.
@@ -160,16 +160,16 @@ impl<'t> Faces<'t> {
         let (mut run, mut number) = (0, 0);
         match self.runs {
             Runs::Indexed(indices) => {
-                for (place, &index) in indices.iter().enumerate() {
+                for (entry, &index) in indices.iter().enumerate() {
                     if index >= 0.0 {
                         let coordinate = index as usize;
                         if coordinate as f64 != index || coordinate >= self.coordinates.len() {
                             return Err(self.out_of_range(index));
                         }
-                        corners.push(Corner { coordinate, place, number });
+                        corners.push(Corner { coordinate, entry, number });
                         number += 1;
                     }
-                    if (index < 0.0 || place + 1 == indices.len()) && !corners.is_empty() {
+                    if (index < 0.0 || entry + 1 == indices.len()) && !corners.is_empty() {
                         visit(run, &mut corners)?;
                         corners.clear();
                         run += 1;
@@ -207,34 +207,34 @@ impl<'t> Faces<'t> {
     #[cold]
     fn too_few(&self, needed: usize) -> Fault {
         let problem = format!("{needed} coordinates are needed, but there are {}", self.coordinates.len());
-        Fault::new(Some(self.line), problem, "give more, or take fewer of them")
+        Fault::new(Some(self.line), problem, "give more coordinates, or use fewer")
     }
 }
 
-/// Which of several normals or materials a corner has.
-pub struct Choice<'t> {
+/// Selects the normal or material of a corner.
+pub struct BindingIndices<'t> {
     binding: Binding,
-    /// Indices of its own, where the file has them.
+    /// The field of indices, if the file has it.
     indices: Option<(&'t Field, &'t [f64])>,
-    /// Those of the coordinates, which stand for them where it does not.
-    instead: Option<&'t [f64]>,
+    /// The indices of coordinates, which are used if the file has no indices.
+    fallback: Option<&'t [f64]>,
 }
 
-impl<'t> Choice<'t> {
-    /// The choice of a set of faces; `field` is the name of its indices.
-    pub fn of(node: &'t Node, field: &str, (binding, indexed): (Binding, bool)) -> Result<Choice<'t>, Fault> {
-        if !indexed || !matches!(node.kind, Kind::IndexedFaceSet | Kind::IndexedTriangleStripSet) {
-            return Ok(Choice { binding, indices: None, instead: None });
+impl<'t> BindingIndices<'t> {
+    /// The indices of a face set; `field` is the name of the field with the indices.
+    pub fn of(node: &'t Node, field: &str, (binding, indexed): (Binding, bool)) -> Result<BindingIndices<'t>, Fault> {
+        if !indexed || !matches!(node.kind, NodeType::IndexedFaceSet | NodeType::IndexedTriangleStripSet) {
+            return Ok(BindingIndices { binding, indices: None, fallback: None });
         }
         let own = |field: &'t Field| {
-            // The default is -1: go by coordIndex
+            // The default -1 means that coordIndex is used.
             Ok(node.numbers(field.name)?.filter(|list| !matches!(list, [] | [-1.0])).map(|list| (field, list)))
         };
         let indices = node.field(field).map_or(Ok(None), own)?;
-        Ok(Choice { binding, indices, instead: node.numbers("coordIndex")? })
+        Ok(BindingIndices { binding, indices, fallback: node.numbers("coordIndex")? })
     }
 
-    /// True if it is always the first.
+    /// True if all corners have the first normal or material.
     pub fn is_overall(&self) -> bool {
         self.binding == Binding::Overall
     }
@@ -244,37 +244,38 @@ impl<'t> Choice<'t> {
         self.binding == Binding::Vertex
     }
 
-    /// The list of indices, where the file has one.
+    /// The field of indices, if the file has it.
     pub fn field(&self) -> Option<&'t Field> {
         self.indices.map(|(field, _)| field)
     }
 
-    /// True if so many normals or materials are enough for these faces, which can be seen without a look at each. There may be
-    /// enough where this says no.
+    /// True if `count` normals or materials are certainly enough for these faces, without visiting them. False does not
+    /// prove the opposite.
     pub fn is_within(&self, count: usize, faces: &Faces) -> bool {
         match self.binding {
             Binding::Overall => count > 0,
-            // A corner without indices has the number of its coordinate
+            // Without coordIndex, the number of a corner is the index of its coordinate.
             Binding::Vertex => matches!(faces.runs, Runs::Counted(_)) && count >= faces.coordinates.len(),
             Binding::Part | Binding::Face => false,
         }
     }
 
-    /// The index for a corner of a face.
+    /// The index of the normal or material of a corner.
     pub fn index(&self, face: &Face, corner: &Corner) -> Result<usize, Fault> {
         let (at, number) = match self.binding {
             Binding::Overall => return Ok(0),
             Binding::Part => (face.part, face.part),
             Binding::Face => (face.number, face.number),
-            Binding::Vertex => (corner.place, corner.number),
+            Binding::Vertex => (corner.entry, corner.number),
         };
-        match (self.indices, self.instead) {
+        match (self.indices, self.fallback) {
             (Some((field, list)), _) => match list.get(at) {
                 Some(&index) if index as usize as f64 == index => Ok(index as usize),
-                Some(index) => Err(field.fault(format!("{index}, number {at} of the list, is no index"))),
-                None => Err(field.fault(format!("{} indices are too few", list.len()))),
+                Some(index) => Err(field.fault(format!("{index}, entry {at} of the list, is not an index"))),
+                None => Err(field.fault(format!("{} indices are not enough", list.len()))),
             },
-            // As in the format's own library, also for parts and faces; where a face ends there, it goes by its number
+            // The reference implementation also does this for parts and faces. If the entry is the end of a face, the
+            // number is used.
             (None, Some(list)) => {
                 Ok(list.get(at).filter(|&&index| index >= 0.0).map_or(number, |&index| index as usize))
             }

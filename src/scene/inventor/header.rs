@@ -1,18 +1,18 @@
-//! The first line of a file: which language follows.
+//! The first line of a file, which names its dialect.
 
 use crate::scene::text::{Fault, quote_bytes};
 
-/// What the header decides.
+/// The properties of a file that depend on its header.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dialect {
-    /// Radians up to which edges are smooth where the file does not say so.
+    /// Default crease angle in radians.
     pub crease_angle: f64,
 }
 
-/// The language of a file.
+/// The dialect of a file.
 ///
 /// # Errors
-/// It is one that this reader does not know, with what to do about it.
+/// The dialect is not supported; the hint names a converter.
 pub fn dialect(bytes: &[u8]) -> Result<Dialect, Fault> {
     let fault = |problem: &str, hint: &str| Err(Fault::new(Some(1), problem, hint));
     if bytes.starts_with(&[0x1f, 0x8b]) {
@@ -22,23 +22,23 @@ pub fn dialect(bytes: &[u8]) -> Result<Dialect, Fault> {
     let words: Vec<&[u8]> = line.split(|&b| b <= b' ').filter(|word| !word.is_empty()).take(3).collect();
     match words.as_slice() {
         [b"#Inventor", _, b"binary", ..] => fault(
-            "binary Open Inventor",
-            "ivcat of Debian's inventor-clients turns it into text: ivcat -o out.iv in.iv",
+            "binary Open Inventor is not supported",
+            "ivcat of Debian's inventor-clients converts it to text: ivcat -o out.iv in.iv",
         ),
-        // As in the format's own library
+        // The default of the reference implementation
         [b"#Inventor", b"V2.0" | b"V2.1", b"ascii", ..] => Ok(Dialect { crease_angle: 0.0 }),
-        // As its specification says
+        // The default of the specification
         [b"#VRML", b"V1.0", ..] => Ok(Dialect { crease_angle: 0.5 }),
         [b"#VRML", b"V2.0", ..] => {
-            fault("VRML 2.0 (VRML97) is another language than VRML 1.0", "MeshLab turns it into PLY or OBJ")
+            fault("VRML 2.0 (VRML97) is not supported, only VRML 1.0 is", "MeshLab converts it to PLY or OBJ")
         }
         [b"#Inventor", b"V1.0", ..] => fault(
-            "Open Inventor V1.0 is an older language",
-            "ivcat of Debian's inventor-clients brings it to V2.1: ivcat -o out.iv in.iv",
+            "Open Inventor V1.0 is not supported",
+            "ivcat of Debian's inventor-clients converts it to V2.1: ivcat -o out.iv in.iv",
         ),
         _ => {
-            let problem = format!("{} is no header of Open Inventor or VRML 1.0", quote_bytes(line));
-            fault(&problem, "the first line is `#Inventor V2.1 ascii` or `#VRML V1.0 ascii`")
+            let problem = format!("{} is not a header of Open Inventor or VRML 1.0", quote_bytes(line));
+            fault(&problem, "the first line must be `#Inventor V2.1 ascii` or `#VRML V1.0 ascii`")
         }
     }
 }
@@ -48,7 +48,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tells_what_it_reads_from_what_it_refuses() {
+    fn supported_headers_are_accepted_and_others_refused() {
         for (header, crease) in [
             ("#Inventor V2.1 ascii", 0.0),
             ("#Inventor V2.1 ascii   \r\nCube{}", 0.0),

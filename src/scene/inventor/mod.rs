@@ -1,44 +1,47 @@
-//! Open Inventor (`.iv`, ASCII, V2.0 and V2.1; Wernecke 1994) and VRML 1.0 (`.wrl`; Bell, Parisi and Pesce 1995), which is
-//! the same language with fewer nodes.
+//! Reader of Open Inventor (`.iv`, ASCII, V2.0 and V2.1; Wernecke 1994) and VRML 1.0 (`.wrl`; Bell, Parisi and Pesce
+//! 1995), which is the same language with fewer nodes.
 //!
-//! A file is a tree of nodes. Most of them set something (a transform, coordinates, materials) for the shapes that follow;
-//! a separator ends what was set inside of it, a group does not. A file is read into a tree first (`parse`), so that `USE`
-//! costs nothing until it makes triangles, and then walked through (`walk`). Where specification and tutorials are silent,
-//! it does what the format's own library (SGI's, 2.1.5) was seen to do.
+//! A file is a tree of nodes. Most nodes set a part of the state (a transform, coordinates, materials) for the shapes
+//! that follow; a separator restores the state at its end, a group does not. A file is parsed into a tree (`parse`), so
+//! that `USE` needs no memory until it creates triangles, and then the tree is traversed (`traverse`). If specification
+//! and tutorials do not define a behaviour, the reader does what the reference implementation (SGI's Open Inventor
+//! 2.1.5) was observed to do.
 //!
-//! **Shading.** Materials have the colours of the file: ambient is `ambientColor` times the ambient light of `Environment`,
-//! and `emissiveColor`; the Phong exponent is 128 times the shininess. The format knows no mirrors, and there are none.
-//! Transparency, textures, text, lines and points are left out with a warning, and shapes that are drawn as lines or points
-//! as well. Under `LightModel BASE_COLOR` a shape shows its diffuse colour whatever the light. A triangle has one material
-//! here: where the file binds colours to corners, a face gets the mean of its corners'. Where a material has lists of
-//! different lengths, each starts again where it ends.
+//! **Shading.** Materials have the colours of the file. Ambient is `ambientColor` times the ambient light of
+//! `Environment`, plus `emissiveColor`; the Phong exponent is 128 times the shininess. The format has no mirrors.
+//! Transparency, textures, text, lines and points are ignored with a warning, as are shapes that are drawn as lines or
+//! points. Under `LightModel BASE_COLOR` a shape has its diffuse colour under any light. A triangle has one material in
+//! this program: if the file binds colours to corners, a face has the mean of its corners' colours. The lists of a
+//! material can have different lengths; each is repeated from its start.
 //!
-//! **Normals** are the file's if there are enough of them. Otherwise they are made: where faces meet at less than the crease
-//! angle, a corner has the mean of their normals (`crease`). That angle is 0 by default, and 0.5 in VRML 1.0.
+//! **Normals** are the file's if there are enough of them. Otherwise they are computed: if faces meet at less than the
+//! crease angle, a corner has the mean of their normals (`crease`). That angle is 0 by default, and 0.5 in VRML 1.0.
 //!
-//! **Faces** that are concave are cut as such, whatever `ShapeHints` says of them.
+//! **Concave faces** are triangulated correctly, independent of `ShapeHints`.
 //!
-//! **Lights.** A light shines everywhere here, not just behind its node. Spots are point lights. A directional light stands
-//! far away, at ten times the scene's diagonal. Colours are colour times intensity.
+//! **Lights** illuminate the whole scene, not only the nodes that follow them. Spot lights become point lights. A
+//! directional light is placed at a distance of ten times the scene's diagonal. The colour of a light is its colour
+//! times its intensity.
 //!
-//! **The first camera** that is met, if it is a perspective one, becomes the scene's.
+//! **The first camera** becomes the scene's, if it is a perspective camera.
 //!
-//! **Curved surfaces** have [`SEGMENTS`] segments around, unless the user wants others; `Complexity` is passed over.
+//! **Curved surfaces** have [`SEGMENTS`] segments around their axis, unless the user sets others; `Complexity` is
+//! ignored.
 
 mod crease;
 mod faces;
 mod header;
-mod kind;
+mod node_type;
 mod parse;
 mod shapes;
 mod state;
 mod transform;
+mod traverse;
 mod tree;
 mod view;
-mod walk;
 
 use super::mesh_builder::MeshBuilder;
-use super::text::{Fault, Includes, Trouble};
+use super::text::{Fault, Includes, ReadError};
 use super::{Options, Scene, SceneCamera};
 use crate::error::{Error, Result};
 use state::State;
@@ -47,44 +50,43 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use tree::Tree;
 
-/// Segments around a curved surface.
+/// The default number of segments around a curved surface.
 pub const SEGMENTS: u32 = 24;
 
-/// Values that may be gone through in all, repetitions counted: so many in any case, and so many more per byte of the files.
+/// The limit of values that are processed, counting repetitions, is `WORK` plus `WORK_PER_BYTE` per byte of the files.
 const WORK: usize = 4_000_000;
 const WORK_PER_BYTE: usize = 16;
 
-/// Faces around a corner that are looked at in the time of one value.
+/// Number of faces around a corner that can be examined in the time of one value.
 const FACES_PER_VALUE: usize = 8;
 
-struct Reader {
+struct InventorReader {
     includes: Includes,
     mesh: MeshBuilder,
     segments: u32,
-    /// Files as trees, with the crease angle of their dialect.
+    /// Parsed files, with the crease angle of their dialect.
     trees: HashMap<PathBuf, Rc<(Tree, f64)>>,
     camera: Option<SceneCamera>,
-    /// Directions of lights that are far away, and their colours.
-    suns: Vec<view::Sun>,
-    /// Nodes that are being walked through, from the outermost inwards.
+    distant_lights: Vec<view::DistantLight>,
+    /// Depth of the current node in the tree, through `USE` and includes.
     depth: usize,
-    /// Values gone through.
+    /// Number of values processed so far.
     work: usize,
 }
 
-/// Reads the file and what it includes.
+/// Reads the file and the files that it includes.
 ///
 /// # Errors
-/// [`crate::Error::Input`] for whatever is wrong with one of the files.
+/// [`crate::Error::Input`] if one of the files is not valid.
 pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     let (includes, bytes) = Includes::new(path, options.outside)?;
-    let mut reader = Reader {
+    let mut reader = InventorReader {
         includes,
         mesh: MeshBuilder::new(options.offset),
         segments: options.segments.unwrap_or(SEGMENTS),
         trees: HashMap::new(),
         camera: None,
-        suns: Vec::new(),
+        distant_lights: Vec::new(),
         depth: 0,
         work: 0,
     };
@@ -95,13 +97,13 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
         let problem = format!("there is no triangle: {}", scene.warnings.join(", "));
         return Err(Error::file(path, None, problem, "a scene needs at least one"));
     }
-    view::shine(&mut scene, &reader.suns);
+    view::add_distant_lights(&mut scene, &reader.distant_lights);
     Ok(scene)
 }
 
-impl Reader {
-    /// Goes through one file, with what was set around the node that includes it.
-    fn file(&mut self, path: &Path, bytes: Rc<Vec<u8>>, around: Option<&State>) -> Result<()> {
+impl InventorReader {
+    /// Reads one file; `outer` is the state of the node that includes it.
+    fn file(&mut self, path: &Path, bytes: Rc<Vec<u8>>, outer: Option<&State>) -> Result<()> {
         let known = self.trees.get(path).cloned();
         let tree = match known {
             Some(tree) => tree,
@@ -111,15 +113,16 @@ impl Reader {
                 tree
             }
         };
-        // The tree has all that is needed of them
+        // The tree holds copies of all values that are needed.
         drop(bytes);
-        if around.is_none() {
+        if outer.is_none() {
             self.includes.release_first();
         }
         let (tree, crease_angle) = &*tree;
-        let mut state = around.copied().unwrap_or(State::new(*crease_angle));
-        let walked = tree.roots.iter().try_for_each(|&root| self.walk(path, tree, root, &mut state, *crease_angle));
-        walked.map_err(|trouble: Trouble| trouble.of(path))
+        let mut state = outer.copied().unwrap_or(State::new(*crease_angle));
+        let mut roots = tree.roots.iter();
+        let result = roots.try_for_each(|&root| self.traverse(path, tree, root, &mut state, *crease_angle));
+        result.map_err(|error: ReadError| error.of(path))
     }
 
     fn tree(&mut self, bytes: &[u8]) -> Result<(Tree, f64), Fault> {
@@ -127,21 +130,27 @@ impl Reader {
         Ok((parse::parse(bytes, &mut self.mesh)?, dialect.crease_angle))
     }
 
-    /// Counts values that are gone through.
-    fn pass(&mut self, values: usize) -> Result<(), Fault> {
+    /// Counts processed values.
+    ///
+    /// # Errors
+    /// The limit is exceeded.
+    fn count_work(&mut self, values: usize) -> Result<(), Fault> {
         if self.work_is_too_much(values) {
-            return Err(Fault::new(None, "copies of copies never end", "use a node less often"));
+            return Err(Fault::new(None, "nested copies repeat too many values", "reduce the repetitions of nodes"));
         }
         Ok(())
     }
 
-    /// Counts the faces that a normal was made of.
-    fn smooth(&mut self, faces: usize) -> Result<(), Fault> {
+    /// Counts the faces that were examined for a normal.
+    ///
+    /// # Errors
+    /// The limit is exceeded.
+    fn count_faces(&mut self, faces: usize) -> Result<(), Fault> {
         if self.work_is_too_much(faces / FACES_PER_VALUE) {
             return Err(Fault::new(
                 None,
                 "too many smooth faces meet in its corners",
-                "give normals, or no creaseAngle",
+                "give normals, or set creaseAngle to 0",
             ));
         }
         Ok(())

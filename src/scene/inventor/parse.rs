@@ -1,29 +1,30 @@
-//! The grammar: from words to a tree.
+//! Parses a file into a tree of nodes.
 //!
-//! Every node is `Name { fields and nodes }`, and a field's values can be told from what follows without knowing its type:
-//! numbers, a string, a list in brackets, words in parentheses, a node, or else one word. So nodes that nobody knows are
-//! passed over like any other. Commas are blanks. `~` behind a field says that it is not to count, `=` connects it to
-//! something that moves: what it is worth meanwhile stands before it.
+//! Every node is `Name { fields and nodes }`. The extent of a field's values can be recognised without knowing the
+//! field's type: they are numbers, a string, a list in brackets, words in parentheses, a node, or a single word. So
+//! unknown nodes can be skipped. Commas are blanks. `~` after a field means that the field is ignored. `=` connects a
+//! field to an animated value; the values before it are the initial ones.
 
-use super::kind::{self, Kind};
+use super::node_type::{self, NodeType};
 use super::tree::{Field, Node, Tree, Values};
 use crate::scene::mesh_builder::MeshBuilder;
-use crate::scene::text::{Fault, Syntax, Words, number, quote_bytes};
+use crate::scene::text::{Fault, Syntax, Tokenizer, number, quote_bytes};
 use std::collections::HashMap;
 
-/// Most nodes inside each other, also by way of `USE` and of included files.
+/// The largest nesting depth of nodes, through `USE` and includes.
 pub const MAX_DEPTH: usize = 200;
 
 static SYNTAX: Syntax = Syntax::new(b"#", b"{}[]()|=~\"").with_blanks(b",");
 
-/// The tree of a file whose header has been checked. `mesh` is told of its memory, and of what is left out.
+/// Parses a file of which the header has been checked. The tree's memory is charged to `mesh`, which also collects the
+/// warnings.
 ///
 /// # Errors
-/// The first fault in the file.
+/// The first error in the file.
 pub fn parse(bytes: &[u8], mesh: &mut MeshBuilder) -> Result<Tree, Fault> {
     let mut parser =
-        Parser { words: Words::new(bytes, &SYNTAX), mesh, tree: Tree::default(), names: HashMap::new(), depth: 0 };
-    while let Some(word) = parser.words.next() {
+        Parser { tokens: Tokenizer::new(bytes, &SYNTAX), mesh, tree: Tree::default(), names: HashMap::new(), depth: 0 };
+    while let Some(word) = parser.tokens.next() {
         if let Some(root) = parser.node(word)? {
             parser.mesh.charge(size_of::<u32>())?;
             parser.tree.roots.push(root);
@@ -33,15 +34,15 @@ pub fn parse(bytes: &[u8], mesh: &mut MeshBuilder) -> Result<Tree, Fault> {
 }
 
 struct Parser<'a, 'm> {
-    words: Words<'a>,
+    tokens: Tokenizer<'a>,
     mesh: &'m mut MeshBuilder,
     tree: Tree,
-    /// Nodes by the name that `DEF` gave them; `None` for one that is left out.
+    /// Nodes by the name that `DEF` gave them; `None` for an ignored node.
     names: HashMap<&'a [u8], Option<u32>>,
     depth: usize,
 }
 
-/// True for what no name of a node or field begins with.
+/// True for a token with which no name of a node or field can begin.
 fn is_punctuation(word: &[u8]) -> bool {
     matches!(word[0], b'{' | b'}' | b'[' | b']' | b'(' | b')' | b'|' | b'=' | b'~' | b'"')
 }
@@ -51,27 +52,27 @@ fn is_number(word: &[u8]) -> bool {
 }
 
 impl<'a> Parser<'a, '_> {
-    /// A node that begins with this word; `None` if it is left out.
+    /// Parses a node that begins with this word; `None` if the node is ignored.
     fn node(&mut self, word: &'a [u8]) -> Result<Option<u32>, Fault> {
         if word == b"USE" {
-            let name = self.words.need("USE")?;
+            let name = self.tokens.need("USE")?;
             return self.names.get(name).copied().ok_or_else(|| {
-                let problem = format!("USE {}: there is no such name", quote_bytes(name));
-                self.words.fault(problem, "names are given with DEF, before they are used")
+                let problem = format!("USE {}: the name is not defined", quote_bytes(name));
+                self.tokens.fault(problem, "define it with DEF before it is used")
             });
         }
         let (mut word, mut names) = (word, None);
         while word == b"DEF" {
-            names = Some(self.words.need("DEF")?);
-            word = self.words.need("DEF")?;
+            names = Some(self.tokens.need("DEF")?);
+            word = self.tokens.need("DEF")?;
         }
-        let line = self.words.line();
+        let line = self.tokens.line();
         if is_punctuation(word) || is_number(word) {
-            let problem = format!("{} where a node should begin", quote_bytes(word));
-            return Err(self.words.fault(problem, "a node is `Name { ... }`"));
+            let problem = format!("{} is not the start of a node", quote_bytes(word));
+            return Err(self.tokens.fault(problem, "a node is `Name { ... }`"));
         }
-        if self.words.need("a node")? != b"{" {
-            return Err(self.words.fault(format!("{} has no `{{`", quote_bytes(word)), "a node is `Name { ... }`"));
+        if self.tokens.need("a node")? != b"{" {
+            return Err(self.tokens.fault(format!("{} has no `{{`", quote_bytes(word)), "a node is `Name { ... }`"));
         }
         self.depth += 1;
         if self.depth > MAX_DEPTH {
@@ -88,14 +89,14 @@ impl<'a> Parser<'a, '_> {
 
     #[cold]
     fn too_deep(&self) -> Fault {
-        self.words.fault(format!("more than {MAX_DEPTH} nodes inside each other"), "flatten the hierarchy")
+        self.tokens.fault(format!("nodes are nested more than {MAX_DEPTH} levels deep"), "flatten the hierarchy")
     }
 
-    /// What stands between the braces of a node.
+    /// Parses a node after its opening brace.
     fn body(&mut self, name: &'a [u8], line: usize) -> Result<Option<u32>, Fault> {
-        let kind = Kind::of(name);
+        let kind = NodeType::of(name);
         let mut node = Node {
-            kind: kind.unwrap_or(Kind::Nothing),
+            kind: kind.unwrap_or(NodeType::Irrelevant),
             line,
             fields: Vec::new(),
             children: Vec::new(),
@@ -103,24 +104,24 @@ impl<'a> Parser<'a, '_> {
             cost: 1,
         };
         loop {
-            let Some(word) = self.words.next() else {
+            let Some(word) = self.tokens.next() else {
                 let problem = format!("the {} that begins here has no `}}`", String::from_utf8_lossy(name));
                 return Err(Fault::new(Some(line), problem, "the file is truncated or a brace is missing"));
             };
             if word == b"}" {
                 break;
             }
-            if matches!(word, b"DEF" | b"USE") || self.words.peek() == Some(b"{") {
-                let within = self.words.line();
+            if matches!(word, b"DEF" | b"USE") || self.tokens.peek() == Some(b"{") {
+                let within = self.tokens.line();
                 let child = self.node(word)?;
-                if !node.kind.holds_nodes() {
-                    let problem = format!("a {} holds no other nodes", String::from_utf8_lossy(name));
-                    return Err(Fault::new(Some(within), problem, "close it with `}` before"));
+                if !node.kind.has_children() {
+                    let problem = format!("a {} cannot contain nodes", String::from_utf8_lossy(name));
+                    return Err(Fault::new(Some(within), problem, "close it with `}` before the node"));
                 }
-                // What is inside of an unknown node is passed over with it
-                if let Some(child) = child.filter(|_| node.kind != Kind::Nothing) {
+                // The children of an ignored node are ignored.
+                if let Some(child) = child.filter(|_| node.kind != NodeType::Irrelevant) {
                     self.mesh.charge(size_of::<u32>())?;
-                    self.adopt(&mut node, child)?;
+                    self.raise_height(&mut node, child)?;
                     node.children.push(child);
                 }
             } else {
@@ -129,13 +130,13 @@ impl<'a> Parser<'a, '_> {
         }
         match kind {
             None => {
-                let warning = format!("unknown node {} passed over", quote_bytes(name));
+                let warning = format!("unknown node {} ignored", quote_bytes(name));
                 self.mesh.warnings.add(&warning);
                 Ok(None)
             }
-            Some(Kind::Nothing) => Ok(None),
-            Some(Kind::LeftOut) => {
-                self.mesh.warnings.add(&format!("{} left out", String::from_utf8_lossy(name)));
+            Some(NodeType::Irrelevant) => Ok(None),
+            Some(NodeType::Unsupported) => {
+                self.mesh.warnings.add(&format!("{} ignored", String::from_utf8_lossy(name)));
                 Ok(None)
             }
             Some(_) => {
@@ -146,32 +147,35 @@ impl<'a> Parser<'a, '_> {
         }
     }
 
-    /// Notes that a node is inside of another.
-    fn adopt(&mut self, node: &mut Node, child: u32) -> Result<(), Fault> {
+    /// Makes the height of a node exceed that of a child.
+    ///
+    /// # Errors
+    /// The nesting is too deep.
+    fn raise_height(&mut self, node: &mut Node, child: u32) -> Result<(), Fault> {
         node.height = node.height.max(1 + self.tree.node(child).height);
         if node.height > MAX_DEPTH { Err(self.too_deep()) } else { Ok(()) }
     }
 
-    /// A field of this name. It is kept if this reader uses it.
+    /// Parses a field, and stores it if this reader supports it.
     fn field(&mut self, node: &mut Node, name: &'a [u8]) -> Result<(), Fault> {
-        let line = self.words.line();
+        let line = self.tokens.line();
         if is_punctuation(name) || is_number(name) {
-            let problem = format!("{} where a field or a node should begin", quote_bytes(name));
-            return Err(self.words.fault(problem, "is a bracket missing before it?"));
+            let problem = format!("{} is not the start of a field or a node", quote_bytes(name));
+            return Err(self.tokens.fault(problem, "check for a missing bracket before it"));
         }
-        let known = kind::field(name).filter(|_| node.kind != Kind::Nothing);
+        let known = node_type::field(name).filter(|_| node.kind != NodeType::Irrelevant);
         let values = self.values(name, known.is_some())?;
-        let ignored = self.words.peek() == Some(b"~");
+        let ignored = self.tokens.peek() == Some(b"~");
         if ignored {
-            self.words.next();
+            self.tokens.next();
         }
         let values = if ignored { Some(Values::Ignored) } else { values };
-        if self.words.peek() == Some(b"=") {
-            self.words.next();
+        if self.tokens.peek() == Some(b"=") {
+            self.tokens.next();
             self.connection()?;
         }
         if let (Some(name), Some(values)) = (known, values) {
-            // Nodes of nodes that are used twice may cost any number
+            // The sum saturates, because nested nodes that are used repeatedly can have any cost.
             node.cost = node.cost.saturating_add(match &values {
                 Values::Numbers(numbers) => numbers.len(),
                 Values::Words(words) => words.len(),
@@ -179,7 +183,7 @@ impl<'a> Parser<'a, '_> {
                 Values::Ignored => 0,
             });
             if let Values::Node(inner) = values {
-                self.adopt(node, inner)?;
+                self.raise_height(node, inner)?;
             }
             self.mesh.charge(size_of::<Field>())?;
             node.fields.push(Field { name, line, values });
@@ -187,30 +191,30 @@ impl<'a> Parser<'a, '_> {
         Ok(())
     }
 
-    /// A field's values; `None` if there are none, or if nobody wants them.
+    /// Parses the values of a field; `None` if there are none, or they are not `wanted`.
     fn values(&mut self, name: &'a [u8], wanted: bool) -> Result<Option<Values>, Fault> {
-        let Some(first) = self.words.peek() else {
-            return Err(self.words.fault(format!("{}: the file ends", quote_bytes(name)), "the file is truncated"));
+        let Some(first) = self.tokens.peek() else {
+            return Err(self.tokens.fault(format!("{}: the file ends", quote_bytes(name)), "the file is truncated"));
         };
         let mut list = List::new(wanted);
         match first[0] {
             b'~' | b'=' => return Ok(None),
             b'[' => {
-                self.words.next();
+                self.tokens.next();
                 loop {
-                    while let Some(value) = self.words.plain_number() {
+                    while let Some(value) = self.tokens.plain_number() {
                         list.number(value);
                     }
-                    match self.words.need("a list")? {
+                    match self.tokens.need("a list")? {
                         b"]" => break,
                         word => self.item(name, word, &mut list)?,
                     }
                 }
             }
             b'(' => {
-                self.words.next();
+                self.tokens.next();
                 loop {
-                    match self.words.need("a list")? {
+                    match self.tokens.need("a list")? {
                         b")" => break,
                         b"|" => {}
                         word => self.item(name, word, &mut list)?,
@@ -218,13 +222,13 @@ impl<'a> Parser<'a, '_> {
                 }
             }
             _ if is_number(first) => {
-                while let Some(word) = self.words.peek().filter(|word| is_number(word)) {
-                    self.words.next();
+                while let Some(word) = self.tokens.peek().filter(|word| is_number(word)) {
+                    self.tokens.next();
                     self.item(name, word, &mut list)?;
                 }
             }
             _ => {
-                self.words.next();
+                self.tokens.next();
                 self.item(name, first, &mut list)?;
             }
         }
@@ -239,13 +243,13 @@ impl<'a> Parser<'a, '_> {
         Ok(values)
     }
 
-    /// One value.
+    /// Adds a value that begins with `word` to the list.
     #[inline]
     fn item(&mut self, name: &[u8], word: &'a [u8], list: &mut List) -> Result<(), Fault> {
         if is_number(word) {
             let Some(value) = value(word) else {
                 let (name, word) = (String::from_utf8_lossy(name), quote_bytes(word));
-                return Err(self.words.fault(format!("{name}: {word} is not a finite number"), ""));
+                return Err(self.tokens.fault(format!("{name}: {word} is not a finite number"), ""));
             };
             list.number(value);
             return Ok(());
@@ -254,7 +258,7 @@ impl<'a> Parser<'a, '_> {
     }
 
     fn item_of_words(&mut self, name: &[u8], word: &'a [u8], list: &mut List) -> Result<(), Fault> {
-        if matches!(word, b"DEF" | b"USE") || self.words.peek() == Some(b"{") {
+        if matches!(word, b"DEF" | b"USE") || self.tokens.peek() == Some(b"{") {
             list.node = self.node(word)?;
             return Ok(());
         }
@@ -262,7 +266,7 @@ impl<'a> Parser<'a, '_> {
             [b'"', inner @ .., b'"'] => inner,
             _ if is_punctuation(word) => {
                 let (name, word) = (String::from_utf8_lossy(name), quote_bytes(word));
-                return Err(self.words.fault(format!("{name}: {word} where a value should be"), ""));
+                return Err(self.tokens.fault(format!("{name}: {word} is not a value"), ""));
             }
             _ => word,
         };
@@ -272,24 +276,24 @@ impl<'a> Parser<'a, '_> {
         Ok(())
     }
 
-    /// What a field is connected to: a node, and the name of what comes out of it. The field stays as it is.
+    /// Skips the connection of a field: a node, and the name of its output. The field keeps its values.
     fn connection(&mut self) -> Result<(), Fault> {
-        let word = self.words.need("a connection")?;
+        let word = self.tokens.need("a connection")?;
         if word == b"USE" {
-            // `USE name.output`, which is one word or several
-            self.words.need("USE")?;
+            // `USE name.output` can be one token or several.
+            self.tokens.need("USE")?;
         } else {
             self.node(word)?;
         }
-        if self.words.peek().is_some_and(|word| word[0] == b'.') && self.words.next() == Some(b".") {
-            self.words.need("a connection")?;
+        if self.tokens.peek().is_some_and(|word| word[0] == b'.') && self.tokens.next() == Some(b".") {
+            self.tokens.need("a connection")?;
         }
-        self.mesh.warnings.add("fields that something moves stay as they stand in the file");
+        self.mesh.warnings.add("connected fields keep the values in the file: animations are ignored");
         Ok(())
     }
 }
 
-/// A number, also in hexadecimal.
+/// Parses a number, decimal or hexadecimal.
 #[inline]
 fn value(word: &[u8]) -> Option<f64> {
     match number::double(word) {
@@ -301,7 +305,7 @@ fn value(word: &[u8]) -> Option<f64> {
     }
 }
 
-/// Values that are being read.
+/// The values of a field while it is parsed.
 struct List {
     wanted: bool,
     numbers: Vec<f64>,
@@ -321,7 +325,7 @@ impl List {
         }
     }
 
-    /// Of mixed values the words count: they are refused where numbers are needed.
+    /// The values of the field. A list of numbers and words becomes words, which are refused if numbers are needed.
     fn values(self) -> Option<Values> {
         match self {
             List { wanted: false, .. } => None,

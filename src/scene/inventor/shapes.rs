@@ -1,17 +1,17 @@
-//! Shapes: what becomes triangles.
+//! Converts shapes to triangles.
 
-use super::Reader;
-use super::crease::{Creased, Smooth};
-use super::faces::{Choice, Face, Faces};
-use super::kind::Kind;
+use super::InventorReader;
+use super::crease::{CornerNormal, Creased};
+use super::faces::{BindingIndices, Face, Faces};
+use super::node_type::NodeType;
 use super::state::{Binding, State};
 use super::tree::{Field, Node};
 use crate::scene::Material;
 use crate::scene::text::Fault;
 use glam::DVec3;
 
-/// The corners of a cube's sides, by the signs of their coordinates, in the order that materials are bound to them: front,
-/// back, left, right, top, bottom.
+/// The signs of the coordinates of the corners of a cube's sides. The order of the sides is that of bound materials:
+/// front, back, left, right, top, bottom.
 const SIDES: [[[f64; 3]; 4]; 6] = [
     [[-1., -1., 1.], [1., -1., 1.], [1., 1., 1.], [-1., 1., 1.]],
     [[1., -1., -1.], [-1., -1., -1.], [-1., 1., -1.], [1., 1., -1.]],
@@ -21,30 +21,32 @@ const SIDES: [[[f64; 3]; 4]; 6] = [
     [[-1., -1., -1.], [1., -1., -1.], [1., -1., 1.], [-1., -1., 1.]],
 ];
 
-/// Where the normals of a set of faces come from.
+/// The source of the normals of a face set.
 enum Normals<'t> {
-    Given(Choice<'t>),
-    /// Every face has its own.
+    /// The file gives them.
+    Given(BindingIndices<'t>),
+    /// All corners of a face have the face's normal.
     Flat,
-    Made(Creased),
+    /// They are computed with a crease angle.
+    Computed(Creased),
 }
 
-impl Reader {
-    /// Adds a shape.
+impl InventorReader {
+    /// Adds the triangles of a shape to the mesh.
     pub(super) fn shape(&mut self, node: &Node, state: &State) -> Result<(), Fault> {
         if !state.filled {
-            self.mesh.warnings.add("shape drawn as lines, as points or not at all left out");
+            self.mesh.warnings.add("shape with a draw style other than FILLED ignored");
             return Ok(());
         }
         self.mesh.set_transform(state.transform);
         self.mesh.new_shape();
         match node.kind {
-            Kind::Cube => self.cube(node, state),
-            Kind::Sphere => {
+            NodeType::Cube => self.cube(node, state),
+            NodeType::Sphere => {
                 self.part(0, state)?;
                 self.mesh.sphere(DVec3::ZERO, node.number("radius", 1.0)?, self.segments)
             }
-            Kind::Cone => {
+            NodeType::Cone => {
                 let (radius, height) = (node.number("bottomRadius", 1.0)?, node.number("height", 2.0)?);
                 let (top, up) = (DVec3::Y * height / 2.0, DVec3::Y * height.signum());
                 if node.has_part(b"SIDES")? {
@@ -53,7 +55,7 @@ impl Reader {
                 }
                 self.cap(node, state, (b"BOTTOM", 1), (-top, -up, radius))
             }
-            Kind::Cylinder => {
+            NodeType::Cylinder => {
                 let (radius, height) = (node.number("radius", 1.0)?, node.number("height", 2.0)?);
                 let (top, up) = (DVec3::Y * height / 2.0, DVec3::Y * height.signum());
                 if node.has_part(b"SIDES")? {
@@ -67,30 +69,30 @@ impl Reader {
         }
     }
 
-    /// Takes the material of a part of a solid.
+    /// Sets the mesh's material to that of a part of a solid.
     fn part(&mut self, part: usize, state: &State) -> Result<(), Fault> {
         let index = if state.material_binding.0 == Binding::Part { part } else { 0 };
         let found = self.material(index, None, state)?;
-        self.take(found);
+        self.set_material(found);
         Ok(())
     }
 
-    /// One of the materials, and whether light goes through it. An index that is the file's own, in this field, must be
-    /// one; otherwise materials that are too few begin again.
+    /// A material, and whether it is transparent. An index in the file, in this field, must be in range; otherwise the
+    /// materials are repeated.
     fn material(&mut self, index: usize, field: Option<&Field>, state: &State) -> Result<(Material, bool), Fault> {
         let count = state.materials.len();
         if index >= count {
             if let Some(field) = field {
                 return Err(field.fault(format!("index {index} is out of range, there are {count} materials")));
             }
-            self.mesh.warnings.add("fewer materials than are bound: they begin again with the first");
+            self.mesh.warnings.add("fewer materials than bindings: the materials are repeated");
         }
         Ok(state.materials.get(index, state.ambient, state.lit))
     }
 
-    fn take(&mut self, (material, through): (Material, bool)) {
-        if through {
-            self.mesh.warnings.add("transparent material: shown opaque");
+    fn set_material(&mut self, (material, transparent): (Material, bool)) {
+        if transparent {
+            self.mesh.warnings.add("transparent material: rendered opaque");
         }
         self.mesh.set_material(material);
     }
@@ -100,16 +102,16 @@ impl Reader {
         let [width, height, depth] = size;
         let half = DVec3::new(width?, height?, depth?) / 2.0;
         for (side, corners) in SIDES.into_iter().enumerate() {
-            // A cube's sides are faces as well
+            // The sides of a cube count as parts and as faces.
             let bound = matches!(state.material_binding.0, Binding::Part | Binding::Face);
             let found = self.material(if bound { side } else { 0 }, None, state)?;
-            self.take(found);
+            self.set_material(found);
             self.mesh.polygon(&corners.map(|signs| DVec3::from(signs) * half), &[])?;
         }
         Ok(())
     }
 
-    /// A round end, if the node has that part.
+    /// Adds the disk at an end of a cone or cylinder, if the node has that part.
     fn cap(
         &mut self,
         node: &Node,
@@ -124,15 +126,15 @@ impl Reader {
         self.mesh.ring(center, normal, [0.0, radius.abs()], self.segments)
     }
 
-    /// A set of faces.
+    /// Adds the triangles of a face set.
     fn faces(&mut self, node: &Node, state: &State) -> Result<(), Fault> {
         let faces = Faces::of(node, state.coordinates, state.clockwise)?;
         let normals = self.normals(node, state, &faces)?;
-        if let Normals::Made(made) = &normals {
-            let (positions, triangles) = made.size();
-            self.mesh.make_room(positions, triangles);
+        if let Normals::Computed(computed) = &normals {
+            let (positions, triangles) = computed.size();
+            self.mesh.reserve(positions, triangles);
         }
-        let materials = Choice::of(node, "materialIndex", state.material_binding)?;
+        let materials = BindingIndices::of(node, "materialIndex", state.material_binding)?;
         if materials.is_overall() {
             self.part(0, state)?;
         }
@@ -145,11 +147,11 @@ impl Reader {
             for (i, corner) in face.corners.iter().enumerate() {
                 match &normals {
                     Normals::Flat => break,
-                    Normals::Made(made) => {
-                        let Smooth { normal, whole, work } = made.normal(visited + i, face.visit);
-                        self.smooth(work)?;
+                    Normals::Computed(computed) => {
+                        let CornerNormal { normal, shared, work } = computed.normal(visited + i, face.visit);
+                        self.count_faces(work)?;
                         directions.push(normal);
-                        indices.push(whole.map(|place| [place, 0]));
+                        indices.push(shared.map(|position| [position, 0]));
                     }
                     Normals::Given(choice) => {
                         let index = choice.index(&face, corner)?;
@@ -170,11 +172,11 @@ impl Reader {
         })
     }
 
-    /// Where normals come from: from the file, if it has all that are needed.
+    /// The source of a face set's normals: the file, if it has all that are needed.
     fn normals<'t>(&mut self, node: &'t Node, state: &State, faces: &Faces) -> Result<Normals<'t>, Fault> {
         let given = state.normals.len() / 3;
         if given > 0 {
-            let choice = Choice::of(node, "normalIndex", state.normal_binding)?;
+            let choice = BindingIndices::of(node, "normalIndex", state.normal_binding)?;
             if choice.is_within(given, faces) {
                 return Ok(Normals::Given(choice));
             }
@@ -188,26 +190,26 @@ impl Reader {
             if needed <= given {
                 return Ok(Normals::Given(choice));
             }
-            self.mesh.warnings.add("fewer normals than are bound: others made");
+            self.mesh.warnings.add("fewer normals than bindings: normals are computed");
         }
         if state.crease_angle > 0.0 {
-            Creased::new(faces, state.crease_angle, &self.mesh).map(Normals::Made)
+            Creased::new(faces, state.crease_angle, &self.mesh).map(Normals::Computed)
         } else {
             Ok(Normals::Flat)
         }
     }
 
-    /// Takes the material of a face; the mean of its corners' where they have their own.
-    fn bound_material(&mut self, face: &Face, choice: &Choice, state: &State) -> Result<(), Fault> {
+    /// Sets the mesh's material to that of a face: if corners have different materials, the mean of them.
+    fn bound_material(&mut self, face: &Face, choice: &BindingIndices, state: &State) -> Result<(), Fault> {
         let first = choice.index(face, &face.corners[0])?;
-        let (mut sum, mut through) = self.material(first, choice.field(), state)?;
+        let (mut sum, mut transparent) = self.material(first, choice.field(), state)?;
         let mut differ = false;
         if choice.is_per_corner() {
             for corner in &face.corners[1..] {
                 let index = choice.index(face, corner)?;
-                let (one, clear) = self.material(index, choice.field(), state)?;
+                let (one, one_transparent) = self.material(index, choice.field(), state)?;
                 differ |= index != first;
-                through |= clear;
+                transparent |= one_transparent;
                 sum.ambient += one.ambient;
                 sum.diffuse += one.diffuse;
                 sum.specular += one.specular;
@@ -216,16 +218,16 @@ impl Reader {
         }
         if !differ {
             let found = state.materials.get(first, state.ambient, state.lit);
-            self.take(found);
+            self.set_material(found);
             return Ok(());
         }
-        self.mesh.warnings.add("colours bound to corners: a face has their mean");
+        self.mesh.warnings.add("colours bound to corners: a face has the mean of its corners");
         let share = 1.0 / face.corners.len() as f32;
         sum.ambient *= share;
         sum.diffuse *= share;
         sum.specular *= share;
         sum.exponent *= share;
-        self.take((sum, through));
+        self.set_material((sum, transparent));
         Ok(())
     }
 }

@@ -1,26 +1,26 @@
-//! What the nodes so far have set, for the shapes that follow.
+//! The traversal state: properties that nodes set for the shapes that follow.
 
-use super::kind::Kind;
+use super::node_type::NodeType;
 use super::tree::{Field, Node};
 use crate::scene::Material;
 use crate::scene::text::Fault;
 use glam::{DAffine3, DVec3, Vec3};
 
-/// How many corners share a normal or a material.
+/// The set of corners that share a normal or a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Binding {
-    /// All.
+    /// All corners of a shape.
     Overall,
-    /// Those of a part: a side of a solid, a strip, a row of a mesh. The parts of a set of faces are its faces.
+    /// The corners of a part: a side of a solid, a strip, a row of a mesh. The parts of a face set are its faces.
     Part,
-    /// Those of a face.
+    /// The corners of a face.
     Face,
-    /// None.
+    /// No corners: each corner has its own.
     Vertex,
 }
 
 impl Binding {
-    /// A binding of its field; what the default is depends on what it binds. True if it goes by a list of indices.
+    /// The binding in a field, and whether it uses a list of indices.
     fn read(node: &Node, field: &str, default: (Binding, bool)) -> Result<(Binding, bool), Fault> {
         let Some(word) = node.word(field)? else { return Ok(default) };
         Ok(match word {
@@ -37,21 +37,21 @@ impl Binding {
     }
 }
 
-/// Where a node's word is none of those that it may be.
+/// The error that a field's word is not one of its allowed values.
 #[cold]
 fn unknown(field: Option<&Field>, word: &[u8]) -> Fault {
-    let problem = format!("{} is none of its values", crate::scene::text::quote_bytes(word));
+    let problem = format!("{} is not one of its values", crate::scene::text::quote_bytes(word));
     field.map_or_else(|| Fault::new(None, problem.clone(), ""), |field| field.fault(&problem))
 }
 
-/// Diffuse colours.
+/// A list of diffuse colours in one of the format's encodings.
 #[derive(Clone, Copy, Debug)]
 enum Colours<'t> {
-    /// Three numbers each.
+    /// Three numbers per colour, 0 to 1.
     Rgb(&'t [f64]),
-    /// One number each, 0xRRGGBBAA.
+    /// One number per colour, 0xRRGGBBAA.
     Rgba(&'t [f64]),
-    /// One number each, 0xAABBGGRR, as in V2.0.
+    /// One number per colour, 0xAABBGGRR, as in V2.0.
     Abgr(&'t [f64]),
 }
 
@@ -63,7 +63,7 @@ impl Colours<'_> {
         }
     }
 
-    /// A colour and how transparent it is.
+    /// A colour and its transparency, 0 to 1. The list is repeated.
     fn get(&self, index: usize) -> (DVec3, f64) {
         let bytes = |numbers: &[f64]| {
             let packed = numbers.get(index % numbers.len().max(1)).map_or(0, |&number| number as u32);
@@ -83,13 +83,13 @@ impl Colours<'_> {
     }
 }
 
-/// A vector of a list that starts again where it ends.
+/// A vector of a list of vectors, which is repeated.
 fn triple(numbers: &[f64], index: usize) -> DVec3 {
     let at = 3 * (index % (numbers.len() / 3).max(1));
     numbers.get(at..at + 3).map_or(DVec3::ZERO, DVec3::from_slice)
 }
 
-/// Lists of what makes materials: each starts again where it ends.
+/// The lists that define materials; each of them is repeated.
 #[derive(Clone, Copy, Debug)]
 pub struct Materials<'t> {
     ambient: &'t [f64],
@@ -101,48 +101,47 @@ pub struct Materials<'t> {
 }
 
 impl Materials<'_> {
-    /// Number of materials.
+    /// Number of materials: the length of the longest list, at least 1.
     pub fn len(&self) -> usize {
         let triples = [self.ambient, self.specular, self.emissive].map(|list| list.len() / 3);
         let singles = [self.shininess.len(), self.transparency.len(), self.diffuse.len()];
         triples.into_iter().chain(singles).max().unwrap_or(0).max(1)
     }
 
-    /// A material, and whether light goes through it. `ambient` is the light that is everywhere; without `lit` it shows its
-    /// diffuse colour and no light changes that.
+    /// A material, and whether it is transparent. `ambient` is the ambient light; unless `lit`, the material has its
+    /// diffuse colour under any light.
     pub fn get(&self, index: usize, ambient: DVec3, lit: bool) -> (Material, bool) {
         let single = |list: &[f64]| list.get(index % list.len().max(1)).copied().unwrap_or(0.0);
-        let (diffuse, through) = self.diffuse.get(index);
+        let (diffuse, transparency) = self.diffuse.get(index);
         let diffuse = diffuse.as_vec3();
-        let through = through.max(single(self.transparency)) > 0.0;
+        let transparent = transparency.max(single(self.transparency)) > 0.0;
         if !lit {
-            return (Material { ambient: diffuse, ..Material::matt(Vec3::ZERO) }, through);
+            return (Material { ambient: diffuse, ..Material::matt(Vec3::ZERO) }, transparent);
         }
         let own = triple(self.ambient, index) * ambient + triple(self.emissive, index);
         let material = Material { ambient: own.as_vec3(), ..Material::matt(diffuse) };
         let exponent = single(self.shininess) * SHININESS;
-        (material.shiny(triple(self.specular, index).as_vec3(), exponent as f32, 0.0), through)
+        (material.shiny(triple(self.specular, index).as_vec3(), exponent as f32, 0.0), transparent)
     }
 }
 
-/// Phong exponent of a shininess of one.
+/// The Phong exponent of a shininess of 1.
 const SHININESS: f64 = 128.0;
 
-/// Positions.
+/// A list of positions.
 #[derive(Clone, Copy, Debug)]
 pub struct Coordinates<'t> {
     pub numbers: &'t [f64],
-    /// Numbers per position: three, or four with a divisor.
+    /// Numbers per position: three, or four for homogeneous coordinates.
     pub width: usize,
 }
 
 impl Coordinates<'_> {
-    /// Number of positions.
     pub fn len(&self) -> usize {
         self.numbers.len() / self.width
     }
 
-    /// A position.
+    /// The position at an index, if it is in range.
     pub fn get(&self, index: usize) -> Option<DVec3> {
         match *self.numbers.get(index * self.width..(index + 1) * self.width)? {
             [x, y, z] => Some(DVec3::new(x, y, z)),
@@ -152,44 +151,46 @@ impl Coordinates<'_> {
     }
 }
 
-/// Everything that a separator saves.
+/// The traversal state, which a separator saves and restores.
 #[derive(Clone, Copy, Debug)]
 pub struct State<'t> {
-    /// From here to the scene.
+    /// The transform from the coordinates of the current node to those of the file.
     pub transform: DAffine3,
-    /// Metres per unit.
+    /// The unit of length in metres.
     pub unit: f64,
     pub coordinates: Coordinates<'t>,
-    /// Three numbers each.
+    /// Three numbers per normal.
     pub normals: &'t [f64],
-    /// How they are bound, and whether by index.
+    /// The binding of normals, and whether it uses indices.
     pub normal_binding: (Binding, bool),
     pub materials: Materials<'t>,
+    /// The binding of materials, and whether it uses indices.
     pub material_binding: (Binding, bool),
-    /// False if colours are shown as they are.
+    /// False if shapes have their diffuse colour under any light.
     pub lit: bool,
-    /// False if shapes are drawn as lines or points, or not at all.
+    /// False if shapes are drawn as lines or points, or are invisible.
     pub filled: bool,
-    /// Radians up to which an edge is smooth.
+    /// The largest angle, in radians, between faces at a smooth edge.
     pub crease_angle: f64,
-    /// True if corners go clockwise where a face is seen from outside.
+    /// True if the corners of a face are clockwise, seen from outside.
     pub clockwise: bool,
-    /// The light that is everywhere.
+    /// The ambient light.
     pub ambient: DVec3,
-    /// What the switch around this one chose.
-    pub chosen: i64,
+    /// The child that the enclosing switch selected, as in `whichChild`.
+    pub selected_child: i64,
 }
 
-/// Diffuse colour by default.
+/// The default diffuse colour.
 const GREY: [f64; 3] = [0.8; 3];
 const PACKED_GREY: [f64; 1] = [0xcccc_ccff_u32 as f64];
 
-/// Of normals: corners have their own, by the shape's coordinates.
+/// The default binding of normals: each corner has its own, by the index of its coordinate.
 const NORMALS: (Binding, bool) = (Binding::Vertex, true);
+/// The default binding of materials: all corners have the first.
 const MATERIALS: (Binding, bool) = (Binding::Overall, false);
 
 impl State<'static> {
-    /// Before the first node.
+    /// The state before the first node.
     pub fn new(crease_angle: f64) -> State<'static> {
         State {
             transform: DAffine3::IDENTITY,
@@ -211,12 +212,12 @@ impl State<'static> {
             crease_angle,
             clockwise: false,
             ambient: DVec3::splat(0.2),
-            chosen: -1,
+            selected_child: -1,
         }
     }
 }
 
-/// The list in a field: `before` where it is empty or is to be ignored, `default` where it is not there.
+/// The list in a field; `before` if it is empty or ignored (`~`), `default` if the field is absent.
 fn list<'t>(
     node: &'t Node,
     name: &str,
@@ -233,33 +234,32 @@ fn list<'t>(
 }
 
 impl<'t> State<'t> {
-    /// Takes over what a node that is neither group, transform nor shape sets. A field that is not there has its default; one that is
-    /// empty leaves things as they are.
+    /// Applies a property node. An absent field has its default; an empty field leaves the state unchanged.
     pub fn set(&mut self, node: &'t Node, crease_angle: f64) -> Result<(), Fault> {
-        // Nodes of one field, which may be told to leave things as they are
+        // For nodes with a single field, an ignored field (`~`) means that the node is ignored.
         if ["point", "vector", "value", "model", "style", "creaseAngle"].iter().any(|field| node.ignores(field)) {
             return Ok(());
         }
         match node.kind {
-            Kind::Coordinate3 => self.positions(node.tuples("point", 3)?, 3),
-            Kind::Coordinate4 => self.positions(node.tuples("point", 4)?, 4),
-            Kind::Normal => self.normals = list(node, "vector", 3, self.normals, self.normals)?,
-            Kind::NormalBinding => self.normal_binding = Binding::read(node, "value", NORMALS)?,
-            Kind::MaterialBinding => self.material_binding = Binding::read(node, "value", MATERIALS)?,
-            Kind::Material => self.material(node)?,
-            Kind::BaseColor => self.diffuse(Colours::Rgb(list(node, "rgb", 3, &[], &GREY)?)),
-            Kind::PackedColor => {
+            NodeType::Coordinate3 => self.positions(node.tuples("point", 3)?, 3),
+            NodeType::Coordinate4 => self.positions(node.tuples("point", 4)?, 4),
+            NodeType::Normal => self.normals = list(node, "vector", 3, self.normals, self.normals)?,
+            NodeType::NormalBinding => self.normal_binding = Binding::read(node, "value", NORMALS)?,
+            NodeType::MaterialBinding => self.material_binding = Binding::read(node, "value", MATERIALS)?,
+            NodeType::Material => self.material(node)?,
+            NodeType::BaseColor => self.diffuse(Colours::Rgb(list(node, "rgb", 3, &[], &GREY)?)),
+            NodeType::PackedColor => {
                 self.diffuse(Colours::Rgba(list(node, "orderedRGBA", 1, &[], &PACKED_GREY)?));
                 self.diffuse(Colours::Abgr(list(node, "rgba", 1, &[], &[])?));
             }
-            Kind::VertexProperty => self.vertex_property(node)?,
-            Kind::ShapeHints => {
+            NodeType::VertexProperty => self.vertex_property(node)?,
+            NodeType::ShapeHints => {
                 self.crease_angle = node.number("creaseAngle", crease_angle)?;
                 self.clockwise = node.word("vertexOrdering")? == Some(b"CLOCKWISE");
             }
-            Kind::LightModel => self.lit = node.word("model")? != Some(b"BASE_COLOR"),
-            Kind::DrawStyle => self.filled = matches!(node.word("style")?, None | Some(b"FILLED")),
-            Kind::Environment => {
+            NodeType::LightModel => self.lit = node.word("model")? != Some(b"BASE_COLOR"),
+            NodeType::DrawStyle => self.filled = matches!(node.word("style")?, None | Some(b"FILLED")),
+            NodeType::Environment => {
                 let intensity = node.number("ambientIntensity", 0.2)?;
                 self.ambient = node.vector("ambientColor", DVec3::ONE)? * intensity;
             }
@@ -268,14 +268,14 @@ impl<'t> State<'t> {
         Ok(())
     }
 
-    /// Positions, unless there are none.
+    /// Sets the positions, unless the list is empty.
     fn positions(&mut self, numbers: Option<&'t [f64]>, width: usize) {
         if let Some(numbers) = numbers.filter(|numbers| !numbers.is_empty()) {
             self.coordinates = Coordinates { numbers, width };
         }
     }
 
-    /// Colours, unless there are none.
+    /// Sets the diffuse colours, unless the list is empty.
     fn diffuse(&mut self, colours: Colours<'t>) {
         if colours.len() > 0 {
             self.materials.diffuse = colours;
@@ -296,7 +296,7 @@ impl<'t> State<'t> {
         Ok(())
     }
 
-    /// What is empty there leaves the state as it is, and its binding with it.
+    /// Applies a `VertexProperty`. An empty field leaves the state and its binding unchanged.
     fn vertex_property(&mut self, node: &'t Node) -> Result<(), Fault> {
         self.positions(node.tuples("vertex", 3)?, 3);
         if let Some(numbers) = node.tuples("normal", 3)?.filter(|numbers| !numbers.is_empty()) {

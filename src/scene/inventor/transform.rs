@@ -1,7 +1,7 @@
-//! Transforms. The format's vectors are rows: what stands first in its matrices is a row, and a point goes through the
-//! transforms from the innermost outwards.
+//! Transform nodes. The format has row vectors: its matrices are stored by rows, and a point is transformed by the
+//! innermost transform first.
 
-use super::kind::Kind;
+use super::node_type::NodeType;
 use super::state::State;
 use super::tree::Node;
 use crate::scene::text::{Fault, quote_bytes};
@@ -25,41 +25,41 @@ const UNITS: &[(&str, f64)] = &[
     ("NAUTICAL_MILES", 1852.0),
 ];
 
-/// An affine transform from 16 numbers, of which every fourth one belongs to a projection; `None` if it is one.
+/// The affine transform of a matrix, or `None` if the matrix is a projection.
 pub fn affine(numbers: &[f64; 16]) -> Option<DAffine3> {
-    // Columns of ours are rows of the file's
+    // The rows of the file's matrix are the columns of this one.
     let matrix = DMat4::from_cols_array(numbers);
     (matrix.row(3).to_array() == [0.0, 0.0, 0.0, 1.0]).then(|| DAffine3::from_mat4(matrix))
 }
 
-/// What to say of one that is not.
+/// The problem of a matrix that is not affine.
 pub const PROJECTION: &str = "matrix: the fourth column is not 0 0 0 1";
 
 impl State<'_> {
-    /// Applies a node that is a transform.
-    pub fn move_by(&mut self, node: &Node) -> Result<(), Fault> {
+    /// Applies a transform node.
+    pub fn apply_transform(&mut self, node: &Node) -> Result<(), Fault> {
         let local = match node.kind {
-            Kind::Translation => DAffine3::from_translation(node.vector("translation", DVec3::ZERO)?),
-            Kind::Rotation => DAffine3::from_quat(node.rotation("rotation")?),
-            Kind::RotationXyz => {
+            NodeType::Translation => DAffine3::from_translation(node.vector("translation", DVec3::ZERO)?),
+            NodeType::Rotation => DAffine3::from_quat(node.rotation("rotation")?),
+            NodeType::RotationXyz => {
                 let angle = node.number("angle", 0.0)?;
                 DAffine3::from_quat(match node.word("axis")? {
                     None | Some(b"X") => DQuat::from_rotation_x(angle),
                     Some(b"Y") => DQuat::from_rotation_y(angle),
                     Some(b"Z") => DQuat::from_rotation_z(angle),
                     Some(other) => {
-                        let problem = format!("axis: {} is none", quote_bytes(other));
+                        let problem = format!("axis: {} is not an axis", quote_bytes(other));
                         return Err(Fault::new(None, problem, "give X, Y or Z"));
                     }
                 })
             }
-            Kind::Scale => DAffine3::from_scale(node.vector("scaleFactor", DVec3::ONE)?),
-            Kind::Transform => transform(node)?,
-            Kind::MatrixTransform => {
+            NodeType::Scale => DAffine3::from_scale(node.vector("scaleFactor", DVec3::ONE)?),
+            NodeType::Transform => transform(node)?,
+            NodeType::MatrixTransform => {
                 let matrix = node.array("matrix", DMat4::IDENTITY.to_cols_array())?;
                 affine(&matrix).ok_or_else(|| Fault::new(None, PROJECTION, "projections cannot be traced"))?
             }
-            Kind::ResetTransform => {
+            NodeType::ResetTransform => {
                 if node.word("whatToReset")? != Some(b"BBOX") {
                     self.transform = DAffine3::IDENTITY;
                     self.unit = 1.0;
@@ -70,8 +70,8 @@ impl State<'_> {
                 let word = node.word("units")?.unwrap_or(b"METERS");
                 let Some((_, unit)) = UNITS.iter().find(|(name, _)| name.as_bytes() == word) else {
                     let known: Vec<&str> = UNITS.iter().map(|(name, _)| *name).collect();
-                    let problem = format!("units: {} is none", quote_bytes(word));
-                    return Err(Fault::new(None, problem, format!("there are: {}", known.join(", "))));
+                    let problem = format!("units: {} is not a unit", quote_bytes(word));
+                    return Err(Fault::new(None, problem, format!("give one of {}", known.join(", "))));
                 };
                 let scale = unit / self.unit;
                 self.unit = *unit;
@@ -83,7 +83,8 @@ impl State<'_> {
     }
 }
 
-/// Scales along turned axes, then turns, both around a center, then moves.
+/// The transform of a `Transform` node: it scales along rotated axes and rotates, both around a centre, then
+/// translates.
 fn transform(node: &Node) -> Result<DAffine3, Fault> {
     let center = node.vector("center", DVec3::ZERO)?;
     let axes = node.rotation("scaleOrientation")?;

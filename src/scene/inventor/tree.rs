@@ -1,20 +1,21 @@
-//! A file as a tree: nodes with the fields that matter, in one list. What is used several times stands there once.
+//! The tree of a parsed file: its nodes, with the supported fields, in one list. A node that is used repeatedly is
+//! stored once.
 
-use super::kind::Kind;
+use super::node_type::NodeType;
 use crate::scene::text::{Fault, quote_bytes};
 use glam::{DQuat, DVec3};
 
-/// What a field says.
+/// The values of a field.
 #[derive(Debug)]
 pub enum Values {
     Numbers(Box<[f64]>),
     Words(Box<[Box<[u8]>]>),
     Node(u32),
-    /// Nothing: what was set before stays.
+    /// The field is marked with `~`: the state remains unchanged.
     Ignored,
 }
 
-/// A field with the line in which it begins.
+/// A field, with the line in which it begins.
 #[derive(Debug)]
 pub struct Field {
     pub name: &'static str,
@@ -22,18 +23,18 @@ pub struct Field {
     pub values: Values,
 }
 
-/// A node.
+/// A node of the tree; nodes are referred to by their index in [`Tree::nodes`].
 #[derive(Debug)]
 pub struct Node {
-    pub kind: Kind,
+    pub kind: NodeType,
     /// Line in which it begins.
     pub line: usize,
     pub fields: Vec<Field>,
-    /// Indices of the nodes inside.
+    /// Indices of the child nodes.
     pub children: Vec<u32>,
-    /// Nodes inside each other, this one included.
+    /// Height of the subtree; 1 for a leaf.
     pub height: usize,
-    /// What it takes to go through it: its values.
+    /// Number of values that are processed when the node is visited.
     pub cost: usize,
 }
 
@@ -41,47 +42,46 @@ pub struct Node {
 #[derive(Debug, Default)]
 pub struct Tree {
     pub nodes: Vec<Node>,
-    /// Those that stand in no other.
+    /// Indices of the nodes without a parent.
     pub roots: Vec<u32>,
 }
 
 impl Tree {
-    /// A node by its index.
     pub fn node(&self, index: u32) -> &Node {
         &self.nodes[index as usize]
     }
 }
 
 impl Node {
-    /// The field of that name; the last one, if it is there several times.
+    /// The last field of that name, unless it is ignored (`~`).
     pub fn field(&self, name: &str) -> Option<&Field> {
         let field = self.fields.iter().rev().find(|field| field.name == name)?;
         Some(field).filter(|field| !matches!(field.values, Values::Ignored))
     }
 
-    /// True if the file says that the field of that name is to leave things as they are.
+    /// True if the last field of that name is ignored (`~`).
     pub fn ignores(&self, name: &str) -> bool {
         let field = self.fields.iter().rev().find(|field| field.name == name);
         field.is_some_and(|field| matches!(field.values, Values::Ignored))
     }
 
-    /// A field's numbers, `None` if the file does not have it.
+    /// The numbers of a field; `None` if the field is absent.
     pub fn numbers(&self, name: &str) -> Result<Option<&[f64]>, Fault> {
         self.field(name).map(Field::numbers).transpose()
     }
 
-    /// The numbers of a field whose values have `width` numbers each.
+    /// The numbers of a field with `width` numbers per value.
     pub fn tuples(&self, name: &str, width: usize) -> Result<Option<&[f64]>, Fault> {
         match self.numbers(name)? {
             Some(numbers) if !numbers.len().is_multiple_of(width) => {
-                let problem = format!("{name}: {} numbers are no multiple of {width}", numbers.len());
-                Err(Fault::new(self.field(name).map(|field| field.line), problem, "is one missing?"))
+                let problem = format!("{name}: {} numbers are not a multiple of {width}", numbers.len());
+                Err(Fault::new(self.field(name).map(|field| field.line), problem, "check for a missing number"))
             }
             numbers => Ok(numbers),
         }
     }
 
-    /// A field of so many numbers, or what it is by default.
+    /// A field of `N` numbers.
     pub fn array<const N: usize>(&self, name: &str, default: [f64; N]) -> Result<[f64; N], Fault> {
         match self.field(name) {
             None => Ok(default),
@@ -94,7 +94,7 @@ impl Node {
         self.array(name, [default]).map(|[number]| number)
     }
 
-    /// A field of one whole number.
+    /// A field of one integer.
     pub fn integer(&self, name: &str, default: i64) -> Result<i64, Fault> {
         let number = self.number(name, default as f64)?;
         match self.field(name) {
@@ -103,12 +103,12 @@ impl Node {
         }
     }
 
-    /// A vector or colour.
+    /// A field of one vector or colour.
     pub fn vector(&self, name: &str, default: DVec3) -> Result<DVec3, Fault> {
         self.array(name, default.to_array()).map(DVec3::from)
     }
 
-    /// A rotation: axis and radians. Without an axis it turns nothing.
+    /// A field of one rotation: axis and angle in radians. An axis of length zero gives the identity.
     pub fn rotation(&self, name: &str) -> Result<DQuat, Fault> {
         let [x, y, z, angle] = self.array(name, [0.0, 0.0, 1.0, 0.0])?;
         match DVec3::new(x, y, z).try_normalize() {
@@ -123,18 +123,18 @@ impl Node {
             None => Ok(None),
             Some(field) => match field.words()? {
                 [word] => Ok(Some(word)),
-                words => Err(field.fault(format!("{} words where one is needed", words.len()))),
+                words => Err(field.fault(format!("there are {} words, but one is needed", words.len()))),
             },
         }
     }
 
-    /// True, if the field names that part, or is not there.
+    /// True if the field `parts` names that part, or is absent.
     pub fn has_part(&self, part: &[u8]) -> Result<bool, Fault> {
         let Some(field) = self.field("parts") else { return Ok(true) };
         Ok(field.words()?.iter().any(|word| **word == *part || **word == *b"ALL"))
     }
 
-    /// A switch; also `0` and `1`.
+    /// A boolean field: `TRUE`, `FALSE`, `1` or `0`.
     pub fn flag(&self, name: &str, default: bool) -> Result<bool, Fault> {
         match self.field(name) {
             None => Ok(default),
@@ -148,13 +148,13 @@ impl Node {
         }
     }
 
-    /// A field that is a node.
+    /// A field of one node.
     pub fn inner(&self, name: &str) -> Result<Option<u32>, Fault> {
         match self.field(name) {
             None => Ok(None),
             Some(field) => match &field.values {
                 Values::Node(index) => Ok(Some(*index)),
-                // Empty where the node is one that is left out
+                // The list is empty if the node is ignored.
                 Values::Words(words) if words.is_empty() || matches!(&**words, [word] if **word == *b"NULL") => {
                     Ok(None)
                 }
@@ -165,7 +165,7 @@ impl Node {
 }
 
 impl Field {
-    /// A fault of this field.
+    /// An error in this field.
     #[cold]
     pub fn fault(&self, problem: impl AsRef<str>) -> Fault {
         Fault::new(Some(self.line), format!("{}: {}", self.name, problem.as_ref()), "")
@@ -175,7 +175,7 @@ impl Field {
         match &self.values {
             Values::Numbers(numbers) => Ok(numbers),
             Values::Words(words) => match words.first() {
-                // An empty list is one of numbers as well as of words
+                // An empty list is stored as words.
                 None => Ok(&[]),
                 Some(word) => Err(self.fault(format!("{} is not a number", quote_bytes(word)))),
             },

@@ -1,7 +1,7 @@
 //! Lights and the camera.
 
-use super::Reader;
-use super::kind::Kind;
+use super::InventorReader;
+use super::node_type::NodeType;
 use super::state::State;
 use super::tree::Node;
 use crate::scene::text::Fault;
@@ -9,33 +9,33 @@ use crate::scene::{Light, Pose, Scene, SceneCamera};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_4;
 
-/// How many diagonals of the scene a directional light is away.
+/// Distance of a directional light, in diagonals of the scene.
 const FAR: f32 = 10.0;
 
-/// Direction and colour of a light that is far away.
-pub type Sun = (DVec3, DVec3);
+/// Direction and colour of a directional light.
+pub type DistantLight = (DVec3, DVec3);
 
-impl Reader {
-    /// A light.
+impl InventorReader {
+    /// Adds a light, if it is on.
     pub(super) fn light(&mut self, node: &Node, state: &State) -> Result<(), Fault> {
         if !node.flag("on", true)? {
             return Ok(());
         }
         let colour = node.vector("color", DVec3::ONE)? * node.number("intensity", 1.0)?;
-        if node.kind == Kind::DirectionalLight {
+        if node.kind == NodeType::DirectionalLight {
             let direction = state.transform.transform_vector3(node.vector("direction", DVec3::NEG_Z)?);
-            self.mesh.charge(size_of::<Sun>() + size_of::<Light>())?;
-            self.suns.push((direction, colour));
+            self.mesh.charge(size_of::<DistantLight>() + size_of::<Light>())?;
+            self.distant_lights.push((direction, colour));
             return Ok(());
         }
-        if node.kind == Kind::SpotLight {
-            self.mesh.warnings.add("spot light: shines to all sides");
+        if node.kind == NodeType::SpotLight {
+            self.mesh.warnings.add("spot light: shines in all directions");
         }
         self.mesh.set_transform(state.transform);
         self.mesh.light(node.vector("location", DVec3::Z)?, colour)
     }
 
-    /// A perspective camera, if it is the first.
+    /// Sets the scene's camera, if this is the first.
     pub(super) fn view(&mut self, node: &Node, state: &State) -> Result<(), Fault> {
         if self.camera.is_some() {
             return Ok(());
@@ -50,27 +50,27 @@ impl Reader {
             let pose = Pose { time: 0.0, position, direction, up };
             self.camera = Some(SceneCamera { field_of_view, frames: vec![pose] });
         } else {
-            self.mesh.warnings.add("the camera cannot look: it is left out");
+            self.mesh.warnings.add("the camera has no valid direction or field of view: ignored");
         }
         Ok(())
     }
 }
 
-/// Adds the directional lights, far away from all there is.
-pub fn shine(scene: &mut Scene, suns: &[Sun]) {
+/// Adds the directional lights to the scene as point lights at a distance of [`FAR`] diagonals.
+pub fn add_distant_lights(scene: &mut Scene, lights: &[DistantLight]) {
     let bounds = scene.bounds();
-    let mut dark = 0;
-    for (direction, colour) in suns {
+    let mut invalid = 0;
+    for (direction, colour) in lights {
         let direction = direction.normalize_or_zero().as_vec3();
         let position = bounds.center() - direction * bounds.diagonal() * FAR;
         let light = Light::new(position, colour.as_vec3());
         if direction != glam::Vec3::ZERO && light.position.is_finite() && light.colour.is_finite() {
             scene.lights.push(light);
         } else {
-            dark += 1;
+            invalid += 1;
         }
     }
-    if dark > 0 {
-        scene.warnings.push(format!("directional lights that shine nowhere left out: {dark}"));
+    if invalid > 0 {
+        scene.warnings.push(format!("directional lights without a valid direction or colour ignored: {invalid}"));
     }
 }

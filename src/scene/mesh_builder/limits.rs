@@ -1,13 +1,13 @@
-//! What a file may grow into: copies of copies must not fill the memory.
+//! Limits on the memory of a scene in relation to its files: nested copies must not fill the memory.
 
 use crate::scene::MAX_ELEMENTS;
 use crate::scene::text::Fault;
 
-/// Bytes of memory that any file may take, and bytes more for each of its own.
+/// The limit of memory is `BASE` bytes plus `PER_BYTE` times the size of the files.
 const BASE: usize = 64 << 20;
 const PER_BYTE: usize = 16;
 
-/// The memory that is left.
+/// The allowed and the used memory in bytes.
 pub struct Limits {
     allowed: usize,
     used: usize,
@@ -20,33 +20,36 @@ impl Default for Limits {
 }
 
 impl Limits {
-    /// A file of this size has been read.
+    /// Adds the size of a file, which raises the limit.
     pub fn read(&mut self, bytes: usize) {
-        // One share is for the file's own bytes
+        // One share is taken by the file's bytes in memory.
         self.allowed = self.allowed.saturating_add(bytes.saturating_mul(PER_BYTE - 1));
     }
 
-    /// Something of this size is about to be stored for good. A vector that grows takes twice that.
+    /// Charges an element of this size in a growing vector, which takes up to twice the memory.
+    ///
+    /// # Errors
+    /// The limit is exceeded; so for the following functions.
     #[inline]
     pub fn grow(&mut self, bytes: usize) -> Result<(), Fault> {
         self.keep(bytes.saturating_mul(2))
     }
 
-    /// Something is about to be stored for good that takes this much and no more.
+    /// Charges this memory.
     #[inline]
     pub fn keep(&mut self, bytes: usize) -> Result<(), Fault> {
         self.used = self.used.saturating_add(bytes);
-        self.passing(0)
+        self.check_temporary(0)
     }
 
-    /// What was to [`Limits::grow`] by this size is gone.
+    /// Releases memory that was charged by [`Limits::grow`].
     pub fn shrink(&mut self, bytes: usize) {
         self.used = self.used.saturating_sub(bytes.saturating_mul(2));
     }
 
-    /// Holds that many bytes, which are stored for a while, against what is left.
+    /// Checks that this much temporary memory is available, without charging it.
     #[inline]
-    pub fn passing(&self, bytes: usize) -> Result<(), Fault> {
+    pub fn check_temporary(&self, bytes: usize) -> Result<(), Fault> {
         if self.have_room(bytes) { Ok(()) } else { Err(self.exceeded()) }
     }
 
@@ -56,21 +59,21 @@ impl Limits {
             "the geometry needs more than {} MiB of memory: {PER_BYTE} times the file's size and 64 MiB",
             self.allowed >> 20
         );
-        Fault::new(None, problem, "are there copies of copies? Otherwise take fewer segments, as in FILE:segments=8")
+        Fault::new(None, problem, "reduce nested copies, or the segments of curved surfaces, as in FILE:segments=8")
     }
 
-    /// True if there is room for so many bytes more.
+    /// True if this much memory is available.
     pub fn have_room(&self, bytes: usize) -> bool {
         self.used.saturating_add(bytes) <= self.allowed
     }
 
-    /// One more vertex, or one more triangle, beside this many.
+    /// Checks that one more vertex or triangle is allowed in addition to `present`.
     #[inline]
     pub fn elements(&self, present: usize) -> Result<(), Fault> {
         if present < MAX_ELEMENTS {
             return Ok(());
         }
-        let problem = format!("more than {MAX_ELEMENTS} vertices or triangles");
+        let problem = format!("there are more than {MAX_ELEMENTS} vertices or triangles");
         Err(Fault::new(None, problem, "simplify the scene"))
     }
 }

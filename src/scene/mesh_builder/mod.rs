@@ -1,9 +1,9 @@
-//! A mesh as readers of scene files put it together: a stack of transforms, a current material, polygons and curved
-//! surfaces, and limits on what a file may grow into.
+//! Builds the mesh of a scene for the readers: a stack of transforms, a current material, polygons and curved surfaces,
+//! and limits on the memory.
 //!
-//! A vertex has one normal (SPEC section 1). Corners with the same position and normal share a vertex within a *shape*
-//! (see [`MeshBuilder::new_shape`]), so that a smooth surface is indexed and a sharp edge has its vertices twice. Only a mesh
-//! of nothing but flat faces is not searched for such corners, except in neighbours ([`MeshBuilder::flat_polygon`]).
+//! A vertex has one normal. Corners with equal position and normal share a vertex within a *shape* (see
+//! [`MeshBuilder::new_shape`]), so a smooth surface is indexed, and a sharp edge has two vertices per corner. In a mesh
+//! of flat faces only consecutive coplanar faces share vertices ([`MeshBuilder::flat_polygon`]).
 
 mod curves;
 mod limits;
@@ -21,50 +21,48 @@ use foldhash::fast::RandomState;
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 pub use limits::Limits;
 use polygons::has_direction;
-use revolve::Turns;
+use revolve::UnitCircles;
 use shared::Shared;
 use std::collections::HashMap;
 use std::ops::Range;
 pub use warnings::Warnings;
 
-/// Most transforms inside each other.
+/// The largest depth of the stack of transforms.
 const MAX_DEPTH: usize = 1000;
 
-/// Builds a scene's mesh.
+/// A mesh under construction.
 pub struct MeshBuilder {
     vertices: Vec<Vertex>,
     triangles: Vec<Triangle>,
     materials: Vec<Material>,
     lights: Vec<Light>,
-    /// The shape's vertices.
+    /// Search tables of the shape's vertices.
     shared: Shared,
-    /// Those of the shape's vertices that are not among them yet, for nobody has searched: a curved surface makes its own,
-    /// and so does a plane's first polygon.
+    /// Vertices of the shape that are not in the tables yet. They are added before the next search; curved surfaces and
+    /// the first polygon of a plane need none.
     unlisted: Range<usize>,
-    /// What curved surfaces of as many segments have in common.
-    turns: Turns,
+    circles: UnitCircles,
     /// Normal of the flat polygon that began the shape.
     flat: Vec3,
-    /// Materials by their bits.
+    /// Index of each material by its bits.
     known: HashMap<[u32; 12], u32, RandomState>,
     current: Material,
-    /// Index of the current material, once a triangle has it.
+    /// Index of the current material, once a triangle uses it.
     current_index: Option<u32>,
     stack: Vec<Frame>,
     triangulator: Triangulator,
     corners: Vec<u32>,
     limits: Limits,
-    /// What the user is told.
     pub warnings: Warnings,
 }
 
-/// A transform with what follows from it.
+/// A transform with derived values.
 #[derive(Clone, Copy)]
 struct Frame {
     affine: DAffine3,
-    /// For normals: the inverse transpose but for its length, and good for singular matrices of rank two as well.
+    /// The transform of normals: the inverse transpose up to a factor, which is also valid for matrices of rank two.
     normals: DMat3,
-    /// True if it turns left into right.
+    /// True if it inverts orientation.
     mirrored: bool,
     /// The point of the file that is the origin in memory.
     offset: DVec3,
@@ -82,21 +80,21 @@ impl Frame {
         Frame { affine, normals: cofactors, mirrored: sign < 0.0, offset }
     }
 
-    /// A vertex where the transform puts it, rounded once it is near the origin; the normal is one that
-    /// [`Frame::direction`] has turned.
+    /// A vertex at the transformed position, which is moved to the origin before it is rounded. `normal` is the result
+    /// of [`Frame::direction`].
     #[inline(always)]
     fn place(&self, position: DVec3, normal: Vec3) -> Result<Vertex, Fault> {
         let position = self.affine.transform_point3(position);
-        // Adding zero makes -0 and 0 the same vertex
+        // Adding zero turns -0 into 0, so that both give the same vertex.
         let placed = (position - self.offset).as_vec3() + Vec3::ZERO;
         let within = position.abs().cmple(DVec3::splat(MAX_COORDINATE)).all();
         if within { Ok(Vertex::new(placed, normal)) } else { Err(too_far(position)) }
     }
 
-    /// A normal of any length as the transform turns it, of length one or zero.
+    /// The transformed unit normal of a normal of any length; zero if it has no direction.
     #[inline(always)]
     fn direction(&self, normal: DVec3) -> Vec3 {
-        let turned = unit_if_easy(self.normals * normal).unwrap_or_else(|| unit(self.normals * unit(normal)));
+        let turned = unit_if_in_range(self.normals * normal).unwrap_or_else(|| unit(self.normals * unit(normal)));
         turned.as_vec3() + Vec3::ZERO
     }
 }
@@ -104,7 +102,7 @@ impl Frame {
 #[cold]
 fn too_far(position: DVec3) -> Fault {
     let problem = match position.as_vec3().is_finite() {
-        true => format!("a corner at {position} lies beyond 1e18"),
+        true => format!("a corner at {position} exceeds the largest coordinate 1e18"),
         false => format!("a corner at {} is not finite in single precision", position.as_vec3()),
     };
     Fault::new(None, problem, FINITE)
@@ -119,7 +117,7 @@ impl Default for MeshBuilder {
             lights: Vec::new(),
             shared: Shared::default(),
             unlisted: 0..0,
-            turns: Turns::default(),
+            circles: UnitCircles::default(),
             flat: Vec3::ZERO,
             known: HashMap::default(),
             current: Material::neutral(),
@@ -134,7 +132,7 @@ impl Default for MeshBuilder {
 }
 
 impl MeshBuilder {
-    /// A builder of a mesh whose origin in memory is this point of the file.
+    /// A builder of a mesh that has this point of the file as its origin in memory.
     pub fn new(offset: Option<DVec3>) -> MeshBuilder {
         let frame = Frame::new(DAffine3::IDENTITY, offset.unwrap_or(DVec3::ZERO));
         MeshBuilder { stack: vec![frame], ..MeshBuilder::default() }
@@ -145,34 +143,34 @@ impl MeshBuilder {
         self.frame().offset
     }
 
-    /// Tells the size of a file that is being read: the mesh may grow with it. An included file counts once.
+    /// Adds the size of a file, which raises the limits. An included file must be added only once.
     pub fn read(&mut self, bytes: usize) {
         self.limits.read(bytes);
         self.triangulator.read(bytes);
     }
 
-    /// Holds memory that a reader keeps of the file beside the mesh against the same limits.
+    /// Charges memory that a reader needs in addition to the mesh.
     ///
     /// # Errors
-    /// It is more than the file may take.
+    /// The limit is exceeded.
     pub fn charge(&mut self, bytes: usize) -> Result<(), Fault> {
         self.limits.grow(bytes)
     }
 
-    /// Gives back memory that was charged.
+    /// Releases memory that was charged.
     pub fn discharge(&mut self, bytes: usize) {
         self.limits.shrink(bytes);
     }
 
-    /// The same for memory that a reader is about to take and will soon give back.
+    /// Checks that a reader may allocate this much temporary memory.
     ///
     /// # Errors
-    /// It is more than the file may take.
-    pub fn charge_for_now(&self, bytes: usize) -> Result<(), Fault> {
-        self.limits.passing(bytes)
+    /// The limit is exceeded.
+    pub fn check_temporary(&self, bytes: usize) -> Result<(), Fault> {
+        self.limits.check_temporary(bytes)
     }
 
-    /// The transform from here to the scene.
+    /// The current transform, from local to scene coordinates.
     pub fn transform(&self) -> DAffine3 {
         self.frame().affine
     }
@@ -181,32 +179,32 @@ impl MeshBuilder {
         &self.stack[self.stack.len() - 1]
     }
 
-    /// Applies a transform to what follows, inside the present one, until [`MeshBuilder::pop`].
+    /// Pushes a transform, relative to the current one.
     ///
     /// # Errors
-    /// More than a thousand inside each other.
+    /// The stack is too deep.
     pub fn push(&mut self, local: DAffine3) -> Result<(), Fault> {
         if self.stack.len() > MAX_DEPTH {
-            let problem = format!("more than {MAX_DEPTH} transforms inside each other");
+            let problem = format!("transforms are nested more than {MAX_DEPTH} levels deep");
             return Err(Fault::new(None, problem, "flatten the file's hierarchy"));
         }
         self.stack.push(Frame::new(self.transform() * local, self.offset()));
         Ok(())
     }
 
-    /// Ends what [`MeshBuilder::push`] began; false if there was nothing to end.
+    /// Pops the transform that was pushed last; false if there is none.
     pub fn pop(&mut self) -> bool {
         self.stack.len() > 1 && self.stack.pop().is_some()
     }
 
-    /// Replaces the present transform by one from here to the scene.
+    /// Replaces the current transform; `transform` is from local to scene coordinates.
     pub fn set_transform(&mut self, transform: DAffine3) {
         if let Some(top) = self.stack.last_mut() {
             *top = Frame::new(transform, top.offset);
         }
     }
 
-    /// The material of what follows. What lies outside of a material's range is brought into it.
+    /// Sets the material of the following triangles. Values out of range are clamped, with a warning.
     pub fn set_material(&mut self, material: Material) {
         let sound = |x: f32, most: f32| if x > 0.0 { x.min(most) } else { 0.0 };
         let colour = |c: Vec3| Vec3::from(c.to_array().map(|x| sound(x, 1e6)));
@@ -219,7 +217,7 @@ impl MeshBuilder {
             pad: 0.0,
         };
         if range != material {
-            self.warnings.add("material with a value out of its range: brought into it");
+            self.warnings.add("material with a value out of range: clamped");
         }
         if range != self.current {
             self.current = range;
@@ -227,10 +225,10 @@ impl MeshBuilder {
         }
     }
 
-    /// Adds a point light, at a position inside the present transform.
+    /// Adds a point light at a position in local coordinates.
     ///
     /// # Errors
-    /// Position or colour are beyond single precision.
+    /// Position or colour exceed single precision.
     pub fn light(&mut self, position: DVec3, colour: DVec3) -> Result<(), Fault> {
         let position = (self.transform().transform_point3(position) - self.offset()).as_vec3();
         let colour = colour.as_vec3();
@@ -242,43 +240,38 @@ impl MeshBuilder {
         Ok(())
     }
 
-    /// Number of lights so far.
-    pub fn lights(&self) -> usize {
-        self.lights.len()
-    }
-
     /// Number of triangles so far.
     pub fn triangles(&self) -> usize {
         self.triangles.len()
     }
 
-    /// Sets room aside for a shape of about so many vertices and triangles: a vector that doubles takes three times what it
-    /// holds for a moment. Small shapes beside what is there already would only be slowed down, and have no need of it.
-    pub fn make_room(&mut self, vertices: usize, triangles: usize) {
+    /// Reserves memory for a shape of about this size. It avoids that a vector doubles, for which it temporarily needs
+    /// three times the memory of its content. Shapes smaller than the mesh so far do not benefit and are ignored.
+    pub fn reserve(&mut self, vertices: usize, triangles: usize) {
         let bytes = vertices.saturating_mul(size_of::<Vertex>());
         let bytes = bytes.saturating_add(triangles.saturating_mul(size_of::<Triangle>()));
-        if self.limits.passing(bytes).is_ok() && triangles >= self.triangles.len() {
+        if self.limits.check_temporary(bytes).is_ok() && triangles >= self.triangles.len() {
             self.triangles.reserve_exact(triangles);
             self.vertices.reserve_exact(vertices);
         }
     }
 
-    /// Begins a shape: nothing that follows shares a vertex with what came before.
+    /// Begins a new shape, which shares no vertices with the previous ones.
     pub fn new_shape(&mut self) {
         self.shared.clear();
         self.unlisted = 0..0;
     }
 
-    /// The index of a vertex, new or shared with an equal one of this shape. The normal may have any length; zero stays
-    /// zero, and is shaded with the triangle's own.
+    /// The index of a vertex, which is new or shared with an equal one of this shape. The normal may have any length;
+    /// with a zero normal, shading uses the triangle's.
     ///
     /// # Errors
-    /// The position is beyond single precision, or there are too many.
+    /// The position exceeds single precision, or there are too many vertices.
     pub fn vertex(&mut self, position: DVec3, normal: DVec3) -> Result<u32, Fault> {
         self.shared_vertex(position, self.direction(normal))
     }
 
-    /// The same with a normal that [`MeshBuilder::direction`] has brought into the scene.
+    /// Like [`MeshBuilder::vertex`], with a normal that [`MeshBuilder::direction`] has transformed.
     fn shared_vertex(&mut self, position: DVec3, normal: Vec3) -> Result<u32, Fault> {
         let vertex = self.frame().place(position, normal)?;
         let MeshBuilder { shared, vertices, limits, unlisted, .. } = self;
@@ -287,7 +280,7 @@ impl MeshBuilder {
         shared.find_or(&vertex, vertices, |vertices| store(vertices, vertex, limits, held))
     }
 
-    /// The same in a shape of few vertices, of which none is listed.
+    /// Like [`MeshBuilder::shared_vertex`], in a shape of few vertices, none of which is in the tables.
     fn unlisted_vertex(&mut self, position: DVec3, normal: Vec3) -> Result<u32, Fault> {
         let vertex = self.frame().place(position, normal)?;
         let same = |&index: &usize| shared::bits(&self.vertices[index]) == shared::bits(&vertex);
@@ -300,7 +293,8 @@ impl MeshBuilder {
         Ok(index)
     }
 
-    /// The same for a mesh that has indices of its own: corners with the same two indices share a vertex, others do not.
+    /// Like [`MeshBuilder::vertex`], for a mesh with indices: exactly the corners with the same two indices share a
+    /// vertex.
     ///
     /// # Errors
     /// As [`MeshBuilder::vertex`].
@@ -314,15 +308,15 @@ impl MeshBuilder {
         Ok(index)
     }
 
-    /// A normal of any length as the present transform turns it, of length one or zero.
+    /// See [`Frame::direction`].
     fn direction(&self, normal: DVec3) -> Vec3 {
         self.frame().direction(normal)
     }
 
-    /// A triangle between vertices, counter-clockwise where it is seen from outside.
+    /// Adds a triangle; its vertices are counter-clockwise, seen from outside.
     ///
     /// # Errors
-    /// There are too many.
+    /// There are too many triangles.
     pub fn triangle(&mut self, [a, b, c]: [u32; 3]) -> Result<(), Fault> {
         self.limits.elements(self.triangles.len())?;
         self.limits.grow(size_of::<Triangle>())?;
@@ -332,7 +326,7 @@ impl MeshBuilder {
         Ok(())
     }
 
-    /// The index of the current material, which a triangle is about to have.
+    /// The index of the current material, which is added to the list if necessary.
     fn material_index(&mut self) -> Result<u32, Fault> {
         if let Some(index) = self.current_index {
             return Ok(index);
@@ -341,7 +335,7 @@ impl MeshBuilder {
         let next = self.materials.len() as u32;
         let index = *self.known.entry(words).or_insert(next);
         if index == next {
-            // Once in the list and once, with its index, in the map
+            // A material is stored in the list and in the map.
             self.limits.grow(2 * size_of::<Material>())?;
             self.materials.push(self.current);
         }
@@ -349,11 +343,11 @@ impl MeshBuilder {
         Ok(index)
     }
 
-    /// The mesh with its materials, lights and warnings.
+    /// The scene with the mesh, its materials, lights and warnings.
     pub fn finish(self) -> Scene {
         let placement = Placement { offset: self.offset(), exponent: 0 };
         let MeshBuilder { mut vertices, mut triangles, materials, lights, warnings, shared, .. } = self;
-        // Before the vectors are copied into smaller ones
+        // This is released before the vectors are copied to vectors of their exact size.
         drop(shared);
         vertices.shrink_to_fit();
         triangles.shrink_to_fit();
@@ -361,27 +355,27 @@ impl MeshBuilder {
     }
 }
 
-const FINITE: &str = "bring the scene closer to its origin, or repair its transforms";
+const FINITE: &str = "move the scene closer to its origin, or repair its transforms";
 
-/// Adds a vertex, if it and what the tables hold are within the limits.
+/// Adds a vertex, if the memory of the vertices and of the tables, `held`, is within the limits.
 fn store(vertices: &mut Vec<Vertex>, vertex: Vertex, limits: &mut Limits, held: usize) -> Result<u32, Fault> {
     let index = vertices.len();
     limits.elements(index)?;
     limits.grow(size_of::<Vertex>())?;
-    limits.passing(held)?;
+    limits.check_temporary(held)?;
     vertices.push(vertex);
     Ok(index as u32)
 }
 
-/// A unit vector of that direction; zero for what has none.
+/// The unit vector of that direction; zero for a vector without direction.
 pub(super) fn unit(v: DVec3) -> DVec3 {
-    unit_if_easy(v)
+    unit_if_in_range(v)
         .unwrap_or_else(|| if has_direction(v) { (v / v.abs().max_element()).normalize_or_zero() } else { DVec3::ZERO })
 }
 
-/// The unit vector if squares are far from what doubles hold: most of them, and the quick way.
+/// The unit vector, if the squared length is well inside the range of doubles, as it nearly always is.
 #[inline]
-fn unit_if_easy(v: DVec3) -> Option<DVec3> {
+fn unit_if_in_range(v: DVec3) -> Option<DVec3> {
     let square = v.length_squared();
     (1e-200..1e200).contains(&square).then(|| v * square.sqrt().recip())
 }

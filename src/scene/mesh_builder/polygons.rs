@@ -1,4 +1,4 @@
-//! Polygons as triangles between vertices.
+//! Adds polygons to the mesh.
 
 use super::MeshBuilder;
 use crate::scene::polygon::newell;
@@ -6,22 +6,21 @@ use crate::scene::text::Fault;
 use glam::DVec3;
 use std::cell::LazyCell;
 
-/// Corners of a polygon that are compared with each other.
+/// The largest polygon of which the corners are compared with each other instead of searched in the tables.
 const FEW: usize = 4;
 
 impl MeshBuilder {
-    /// A polygon with corners counter-clockwise where it is seen from outside: a fan if it is convex, otherwise cut into
-    /// ears. `normals` has one per corner, or none at all for a flat polygon. One with fewer than three corners is left
-    /// out, with a warning.
+    /// Adds a polygon; its corners are counter-clockwise, seen from outside. `normals` has a normal per corner, or is
+    /// empty for flat shading. A polygon with fewer than three corners is ignored, with a warning.
     ///
     /// # Errors
-    /// A corner is beyond single precision, or there is too much.
+    /// A corner exceeds single precision, or the geometry exceeds the limits.
     pub fn polygon(&mut self, corners: &[DVec3], normals: &[DVec3]) -> Result<(), Fault> {
         self.any_polygon(corners, normals, &[], &[])
     }
 
-    /// The same for a mesh that has indices of its own: with a position's and a normal's for each corner, a vertex that
-    /// comes again within this shape is found without looking at either.
+    /// Like [`MeshBuilder::polygon`], for a mesh with indices: by the indices of position and normal of each corner, a
+    /// vertex of this shape is found without comparing positions and normals.
     ///
     /// # Errors
     /// As [`MeshBuilder::polygon`].
@@ -34,8 +33,8 @@ impl MeshBuilder {
         self.any_polygon(corners, normals, indices, &[])
     }
 
-    /// The same with holes: each begins at one of the indices in `holes` and ends before the next; the polygon's own
-    /// corners come first.
+    /// Like [`MeshBuilder::polygon`], with holes. The outer corners come first; `holes` has the index of the first
+    /// corner of each hole.
     ///
     /// # Errors
     /// As [`MeshBuilder::polygon`].
@@ -51,10 +50,10 @@ impl MeshBuilder {
         holes: &[u32],
     ) -> Result<(), Fault> {
         let outer = holes.first().map_or(corners.len(), |&first| first as usize);
-        if self.is_no_polygon(outer) {
+        if self.is_too_small(outer) {
             return Ok(());
         }
-        // Many need none: triangles whose corners have normals
+        // It is computed lazily, because triangles with normals do not need it.
         let flat = LazyCell::new(|| newell(&corners[..outer]));
         let mut own = None;
         let mut vertices = std::mem::take(&mut self.corners);
@@ -68,7 +67,7 @@ impl MeshBuilder {
             let given = normals.get(i).copied().unwrap_or(DVec3::ZERO);
             let has_length = has_direction(given);
             if !normals.is_empty() && !has_length {
-                self.warnings.add("normal of no length: the polygon's own taken");
+                self.warnings.add("normal of length zero: replaced by the polygon's");
             }
             vertices.push(match indices {
                 _ if !has_length => {
@@ -86,13 +85,13 @@ impl MeshBuilder {
         self.fill(corners, holes, vertices, || *flat)
     }
 
-    /// A flat polygon of a mesh of many. Those that follow each other in one plane share their corners, and no others do:
-    /// in a mesh of flat faces few have any to share, and a search among all of them takes longer than all else.
+    /// Adds a flat polygon of a mesh with flat shading. Only consecutive polygons in one plane share vertices: in such
+    /// a mesh few vertices can be shared, and a search in the whole shape would take most of the time.
     ///
     /// # Errors
     /// As [`MeshBuilder::polygon`].
     pub fn flat_polygon(&mut self, corners: &[DVec3]) -> Result<(), Fault> {
-        if self.is_no_polygon(corners.len()) {
+        if self.is_too_small(corners.len()) {
             return Ok(());
         }
         let flat = newell(corners);
@@ -105,7 +104,7 @@ impl MeshBuilder {
         let mut vertices = std::mem::take(&mut self.corners);
         vertices.clear();
         for &corner in corners {
-            // Few are compared sooner than listed, and most planes have one triangle
+            // Comparing a few corners is faster than a table, and most planes have one triangle.
             vertices.push(match begins && corners.len() <= FEW {
                 true => self.unlisted_vertex(corner, normal)?,
                 false => self.shared_vertex(corner, normal)?,
@@ -114,16 +113,16 @@ impl MeshBuilder {
         self.fill(corners, &[], vertices, || flat)
     }
 
-    /// True for a polygon of so few corners that it is left out.
-    fn is_no_polygon(&mut self, corners: usize) -> bool {
+    /// True for a polygon with fewer than three corners; adds the warning.
+    fn is_too_small(&mut self, corners: usize) -> bool {
         let too_few = corners < 3;
         if too_few {
-            self.warnings.add("polygon with fewer than three corners left out");
+            self.warnings.add("polygon with fewer than three corners ignored");
         }
         too_few
     }
 
-    /// Triangles between the corners of a polygon, which are these vertices. `flat` is Newell's normal.
+    /// Adds the triangles of a polygon with these corners and vertices. `flat` is Newell's normal.
     fn fill(
         &mut self,
         corners: &[DVec3],
@@ -145,7 +144,7 @@ impl MeshBuilder {
     }
 }
 
-/// False for a vector without length, and for one that is not finite.
+/// True for a finite vector that is not zero.
 #[inline]
 pub fn has_direction(v: DVec3) -> bool {
     let largest = v.abs().max_element();

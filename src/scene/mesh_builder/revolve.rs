@@ -1,8 +1,8 @@
-//! Surfaces of revolution: a profile that is turned around an axis.
+//! Surfaces of revolution: a profile that is rotated around an axis.
 //!
-//! Nearly all of them have vertices that surely differ, but for poles and the seam of a torus, which are the same by
-//! construction. Those are made without a search for equal vertices, and are to the bit what it would give. The others
-//! (flattened, far from the origin, next to the limits) are searched corner by corner.
+//! In nearly all of them vertices are provably distinct, except at poles and at the seam of a torus, which are shared
+//! by construction. These surfaces are built without a search for equal vertices; the result is the same to the bit. In
+//! the other surfaces (flattened, far from the origin, near the memory limit) every corner is searched.
 
 use super::{Frame, MeshBuilder, unit};
 use crate::math::Vertex;
@@ -16,33 +16,34 @@ use std::f64::consts::{PI, TAU};
 pub struct Circle {
     /// Distance from the axis; zero is a pole.
     pub radius: f64,
-    /// Along the axis.
+    /// Coordinate along the axis.
     pub height: f64,
-    /// The surface's normal: its part away from the axis and its part along it.
+    /// The surface normal: its components away from the axis and along it.
     pub normal: [f64; 2],
 }
 
 impl Circle {
-    /// True for a pole at which the surface is smooth: all of its corners are the same.
+    /// True for a pole at which the surface is smooth, so that all of its corners are equal.
     fn is_point(&self) -> bool {
         self.radius == 0.0 && self.normal[0] == 0.0
     }
 }
 
-/// What surfaces of as many segments have in common: cosines and sines, and what spheres in the same frame share.
+/// Cached values: the points of a divided unit circle, and the normals of the last surface.
 #[derive(Default)]
-pub struct Turns {
+pub struct UnitCircles {
     around: Vec<[f64; 2]>,
     half: Vec<[f64; 2]>,
-    /// Normals of the surface that was made last, one per vertex.
+    /// Normals of the last surface, one per vertex.
     normals: Vec<Vec3>,
-    /// If it was a sphere: what turned them, and whether its inside was seen. Where it is and how large changes nothing.
+    /// The transform of normals and whether it faces inwards, if the last surface was a sphere. Spheres for which these
+    /// are equal have equal normals.
     sphere: Option<(DMat3, bool)>,
 }
 
-impl Turns {
-    /// Those for so many segments.
-    pub fn of(&mut self, segments: u32) -> &Turns {
+impl UnitCircles {
+    /// Computes the circles for a number of segments, unless they are cached.
+    pub fn of(&mut self, segments: u32) -> &UnitCircles {
         if self.around.len() != segments as usize {
             let turn = |part: u32| (TAU * f64::from(part) / f64::from(segments)).sin_cos();
             self.around = (0..segments).map(turn).map(|(sine, cosine)| [cosine, sine]).collect();
@@ -57,7 +58,7 @@ impl Turns {
         self
     }
 
-    /// The normals of a surface in a frame, one per vertex.
+    /// The transformed normals of a surface, one per vertex.
     fn normals(&mut self, surface: &Surface, frame: &Frame) -> &[Vec3] {
         let sphere = surface.is_sphere.then_some((frame.normals, surface.inside));
         if sphere.is_none() || sphere != self.sphere {
@@ -71,31 +72,31 @@ impl Turns {
         &self.normals
     }
 
-    /// Around the axis: cosine and sine of each segment.
+    /// The full circle: cosine and sine of the start of each segment.
     pub fn around(&self) -> &[[f64; 2]] {
         &self.around
     }
 
-    /// From pole to pole in half as many: away from the axis and along it.
+    /// The half circle from pole to pole, in half as many segments: the components away from the axis and along it.
     pub fn half(&self) -> &[[f64; 2]] {
         &self.half
     }
 }
 
-/// A profile with what turns it.
+/// A surface of revolution in local coordinates.
 struct Surface<'p> {
     origin: DVec3,
-    /// Along the axis.
+    /// Unit vector along the axis.
     up: DVec3,
-    /// Away from it, for every segment.
+    /// Unit vectors away from the axis, at the start of each segment.
     outward: Vec<DVec3>,
     profile: &'p [Circle],
-    /// True if the inside is seen.
+    /// True if the surface faces inwards.
     inside: bool,
     is_sphere: bool,
 }
 
-/// Vertices of a circle: one for each segment, or one for all.
+/// The vertices of a circle: one per segment, or a single one (`step` 0).
 #[derive(Clone, Copy)]
 struct Row {
     first: u32,
@@ -110,14 +111,14 @@ impl Row {
 }
 
 impl MeshBuilder {
-    /// Turns a profile around an axis through `origin`, as a shape that has just begun. `profile` runs so that the outside
-    /// is to its right when the axis points up and radii grow to the right; `inside` turns the surface inside out.
-    /// `segments` quadrilaterals go around, of two triangles each, one at a pole.
+    /// Adds a surface of revolution around an axis through `origin`, as a new shape. If the axis points up and radii
+    /// increase to the right, the outside is to the right of the profile; with `inside` the surface faces inwards.
+    /// There are `segments` quadrilaterals around the axis, of two triangles each, or one at a pole.
     ///
-    /// The profile is two circles, or steps of the same length on a circle of its own, of which the last may be the first.
+    /// The profile must be two circles, or points at equal distances on a circle; it may be closed.
     ///
     /// # Errors
-    /// Too much geometry, or beyond single precision.
+    /// The geometry exceeds the limits, or a position exceeds single precision.
     pub(super) fn revolve(
         &mut self,
         origin: DVec3,
@@ -128,19 +129,19 @@ impl MeshBuilder {
     ) -> Result<(), Fault> {
         let up = unit(axis);
         let (side, front) = up.any_orthonormal_pair();
-        let Turns { around, half, .. } = self.turns.of(segments);
+        let UnitCircles { around, half, .. } = self.circles.of(segments);
         let outward = around.iter().map(|&[cosine, sine]| side * cosine + front * sine).collect();
         let is_sphere = profile.len() == half.len() && profile.iter().zip(half).all(|(a, b)| a.normal == *b);
         let surface = Surface { origin, up, outward, profile, inside, is_sphere: is_sphere && axis == DVec3::Y };
         let (vertices, triangles) = surface.size();
-        if self.has_room(vertices, triangles) && surface.is_apart(self.frame()) {
-            self.add_apart(&surface, vertices, triangles)
+        if self.has_room(vertices, triangles) && surface.is_distinct(self.frame()) {
+            self.add_distinct(&surface, vertices, triangles)
         } else {
             self.add_searched(&surface)
         }
     }
 
-    /// True if so much is surely within the limits, the table of its vertices included.
+    /// True if this many vertices and triangles, and the table of the vertices, are within the limits.
     fn has_room(&self, vertices: usize, triangles: usize) -> bool {
         let bytes = vertices * size_of::<Vertex>() + triangles * size_of::<Triangle>() + 2 * size_of::<Material>();
         self.vertices.len() + vertices <= MAX_ELEMENTS
@@ -148,8 +149,8 @@ impl MeshBuilder {
             && self.limits.have_room(2 * bytes + vertices * size_of::<Vec3>() + self.shared.bytes_with(vertices))
     }
 
-    /// Adds a surface whose size and vertices [`MeshBuilder::has_room`] and [`Surface::is_apart`] have found sound.
-    fn add_apart(&mut self, surface: &Surface, vertices: usize, triangles: usize) -> Result<(), Fault> {
+    /// Adds a surface with distinct vertices ([`Surface::is_distinct`]) within the limits ([`MeshBuilder::has_room`]).
+    fn add_distinct(&mut self, surface: &Surface, vertices: usize, triangles: usize) -> Result<(), Fault> {
         self.limits.grow(vertices * size_of::<Vertex>() + triangles * size_of::<Triangle>())?;
         self.vertices.reserve(vertices);
         self.triangles.reserve(triangles);
@@ -180,10 +181,10 @@ impl MeshBuilder {
         Ok(())
     }
 
-    /// Adds the vertices of a surface's circles, which are where they are found.
+    /// Adds the vertices of a surface's circles, and returns their indices.
     fn add_circles(&mut self, surface: &Surface) -> Result<Vec<Row>, Fault> {
         let frame = *self.frame();
-        let mut normals = self.turns.normals(surface, &frame).iter();
+        let mut normals = self.circles.normals(surface, &frame).iter();
         let mut rows: Vec<Row> = Vec::with_capacity(surface.profile.len());
         for circle in surface.circles() {
             rows.push(Row { first: self.vertices.len() as u32, step: u32::from(!circle.is_point()) });
@@ -197,7 +198,7 @@ impl MeshBuilder {
         Ok(rows)
     }
 
-    /// Adds a surface whose corners may be the same, or be too many.
+    /// Adds a surface that may have equal vertices or exceed the limits.
     fn add_searched(&mut self, surface: &Surface) -> Result<(), Fault> {
         let mut below: Vec<u32> = Vec::new();
         for (row, circle) in surface.profile.iter().enumerate() {
@@ -223,17 +224,17 @@ impl MeshBuilder {
     }
 }
 
-/// How far apart positions must be in their largest coordinate's length, to differ in single precision: eight times what
-/// rounding two of them does.
+/// The distance at which two positions differ in single precision, relative to their largest coordinate: eight times
+/// the rounding error of two positions.
 const POSITIONS: f64 = 1.0 / (1 << 20) as f64;
 
-/// The same in double precision.
+/// The relative distance at which two positions differ in double precision.
 const DOUBLES: f64 = POSITIONS / (1 << 29) as f64;
 
-/// The same for unit normals, with room for what rounding does to a transform.
+/// The distance at which two unit normals differ, with a margin for rounding errors of the transform.
 const NORMALS: f64 = 1e-4;
 
-/// What is always too close.
+/// The smallest distance between two positions.
 const TINY: f64 = 1e-30;
 
 impl Surface<'_> {
@@ -248,40 +249,40 @@ impl Surface<'_> {
         (outward * circle.normal[0] + self.up * circle.normal[1]) * sign
     }
 
-    /// True if the last circle is the first.
+    /// True if the last circle of the profile is the first.
     fn is_closed(&self) -> bool {
         self.profile.len() > 1 && self.profile.first() == self.profile.last()
     }
 
-    /// The circles, each once.
+    /// The distinct circles of the profile.
     fn circles(&self) -> &[Circle] {
         &self.profile[..self.profile.len() - usize::from(self.is_closed())]
     }
 
-    /// Vertices of a circle.
+    /// Number of vertices of a circle.
     fn corners(&self, circle: &Circle) -> usize {
         if circle.is_point() { 1 } else { self.outward.len() }
     }
 
-    /// Vertices and triangles.
+    /// The numbers of vertices and of triangles.
     fn size(&self) -> (usize, usize) {
         let vertices = self.circles().iter().map(|circle| self.corners(circle)).sum();
         let around = |circle: &Circle| if circle.radius != 0.0 { self.outward.len() } else { 0 };
         (vertices, self.profile.windows(2).map(|pair| around(&pair[0]) + around(&pair[1])).sum())
     }
 
-    /// True if no two vertices of the surface are the same in single precision, in position and normal: each circle keeps
-    /// its distance from the next one, and so from all others, and on it either positions or normals keep theirs. Of what
-    /// lies apart, the transform leaves at least its smallest singular value, and of normals the share that this is of the
-    /// largest. (There may be none the same where this says no.)
-    fn is_apart(&self, frame: &Frame) -> bool {
+    /// True if no two vertices of the surface are equal in single precision, in position and normal. Consecutive
+    /// circles, and therefore all circles, must have a minimum distance; on each circle either positions or normals
+    /// must. The transform multiplies distances by at least its smallest singular value, and distances of normals by at
+    /// least the quotient of the smallest and the largest. This is sufficient, not necessary.
+    fn is_distinct(&self, frame: &Frame) -> bool {
         let (matrix, translation) = (frame.affine.matrix3, frame.affine.translation);
         let squares = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(DVec3::length_squared).iter().sum::<f64>();
-        // The two largest singular values multiply to half the sum of the squares at most
+        // The product of the two largest singular values is at most half the sum of the squares.
         let smallest = matrix.determinant().abs() / (squares / 2.0);
         let largest = squares.sqrt();
         let reach = self.profile.iter().map(|circle| circle.radius + circle.height.abs()).fold(0.0, f64::max);
-        // As rounded in memory near the origin, and in the file's coordinates before that
+        // Positions are rounded in the file's coordinates, and again in memory near the origin.
         let near = largest * reach + (frame.affine.transform_point3(self.origin) - frame.offset).length();
         let far = largest * (self.origin.length() + reach) + translation.length();
         let least = near * POSITIONS + far * DOUBLES + TINY;

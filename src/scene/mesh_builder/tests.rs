@@ -1,4 +1,4 @@
-//! What the builder promises, on shapes whose area and volume are known.
+//! Tests of the builder with shapes of known area and volume.
 
 use super::*;
 use std::f64::consts::PI;
@@ -11,7 +11,7 @@ fn area_and_volume(scene: &Scene) -> (f64, f64) {
     })
 }
 
-/// Every corner's normal is on the side from which the triangle turns counter-clockwise.
+/// Asserts that every corner's normal is on the side from which the triangle is counter-clockwise.
 fn normals_face_out(scene: &Scene) {
     for t in &scene.triangles {
         let [a, b, c] = t.vertices.map(|v| scene.vertices[v as usize]);
@@ -30,7 +30,7 @@ fn built(build: impl FnOnce(&mut MeshBuilder)) -> Scene {
 }
 
 #[test]
-fn curved_surfaces_have_the_area_and_volume_they_should() {
+fn curved_surfaces_have_their_analytic_area_and_volume() {
     let n = 128;
     let sphere = built(|b| b.sphere(DVec3::ONE, 2.0, n).unwrap());
     assert_eq!((sphere.triangles.len(), sphere.vertices.len()), (2 * 128 * 63, 128 * 63 + 2));
@@ -57,7 +57,7 @@ fn curved_surfaces_have_the_area_and_volume_they_should() {
 }
 
 #[test]
-fn negative_radii_turn_surfaces_inside_out() {
+fn surfaces_with_negative_radii_face_inwards() {
     for scene in [
         built(|b| b.sphere(DVec3::ZERO, -1.0, 16).unwrap()),
         built(|b| b.torus(DVec3::ZERO, DVec3::Y, 3.0, -1.0, 16).unwrap()),
@@ -68,17 +68,17 @@ fn negative_radii_turn_surfaces_inside_out() {
 }
 
 #[test]
-fn transforms_nest_and_mirrors_keep_the_outside_outside() {
+fn transforms_nest_and_mirrored_surfaces_face_outwards() {
     let scene = built(|b| {
         b.push(DAffine3::from_translation(DVec3::X * 10.0)).unwrap();
         b.push(DAffine3::from_scale(DVec3::new(-2.0, 1.0, 0.5))).unwrap();
         b.sphere(DVec3::ZERO, 1.0, 64).unwrap();
-        assert!(b.pop() && b.pop() && !b.pop(), "the first transform stays");
+        assert!(b.pop() && b.pop() && !b.pop(), "the first transform cannot be popped");
     });
     normals_face_out(&scene);
     let (_, volume) = area_and_volume(&scene);
     assert!((volume / (4.0 / 3.0 * PI) - 1.0).abs() < 1e-2, "{volume}");
-    // Of the ellipsoid (x/2)^2 + y^2 + (2z)^2 = 1 the normal at (x, y, z) is along (x/4, y, 4z)
+    // The normal of the ellipsoid (x/2)^2 + y^2 + (2z)^2 = 1 at (x, y, z) is parallel to (x/4, y, 4z).
     for v in &scene.vertices {
         let p = v.position - Vec3::X * 10.0;
         let expected = Vec3::new(p.x / 4.0, p.y, p.z * 4.0).normalize();
@@ -86,11 +86,11 @@ fn transforms_nest_and_mirrors_keep_the_outside_outside() {
     }
     let mut deep = MeshBuilder::default();
     let fault = (0..2000).find_map(|_| deep.push(DAffine3::IDENTITY).err()).expect("a limit");
-    assert!(fault.problem.contains("transforms inside each other"));
+    assert!(fault.problem.contains("transforms are nested more than"));
 }
 
 #[test]
-fn a_transform_that_flattens_leaves_a_usable_normal() {
+fn a_singular_transform_of_rank_two_gives_a_valid_normal() {
     let scene = built(|b| {
         b.push(DAffine3::from_scale(DVec3::new(1.0, 0.0, 1.0))).unwrap();
         b.polygon(&[DVec3::ZERO, DVec3::Z, DVec3::X], &[]).unwrap();
@@ -105,7 +105,7 @@ fn polygon(corners: &[[f64; 3]], holes: &[u32]) -> Scene {
 
 #[test]
 fn concave_holed_and_bent_polygons_keep_their_area() {
-    // An L of area 3, in three planes, both ways around
+    // An L of area 3, in three planes, in both orientations
     let l = [[0., 0., 0.], [2., 0., 0.], [2., 1., 0.], [1., 1., 0.], [1., 2., 0.], [0., 2., 0.]];
     for turn in [|c: [f64; 3]| c, |[x, y, z]: [f64; 3]| [z, x, y], |[x, y, z]: [f64; 3]| [y, z, x]] {
         for reversed in [false, true] {
@@ -131,39 +131,39 @@ fn concave_holed_and_bent_polygons_keep_their_area() {
 }
 
 #[test]
-fn convex_polygons_are_fans_and_hopeless_ones_no_trouble() {
+fn convex_polygons_are_fans_and_degenerate_ones_are_counted() {
     let round = |i: usize| (i as f64 / 12.0 * 2.0 * PI).sin_cos();
     let circle: Vec<[f64; 3]> = (0..12).map(|i| [round(i).1, round(i).0, 1.0]).collect();
     let scene = polygon(&circle, &[]);
     let fan: Vec<[u32; 3]> = (1..11).map(|i| [0, i, i + 1]).collect();
     assert_eq!(scene.triangles.iter().map(|t| t.vertices).collect::<Vec<_>>(), fan);
     for corners in [vec![[1.; 3]; 5], vec![[0., 0., 0.], [1., 1., 1.], [2., 2., 2.], [3., 3., 3.]]] {
-        assert_eq!(polygon(&corners, &[]).triangles.len(), corners.len() - 2, "no area, but counted");
+        assert_eq!(polygon(&corners, &[]).triangles.len(), corners.len() - 2, "degenerate polygons are counted");
     }
     for corners in [&[][..], &[[0.; 3]], &[[0.; 3], [1.; 3]]] {
         let scene = polygon(corners, &[]);
         assert!(scene.triangles.is_empty());
-        assert_eq!(scene.warnings, ["polygon with fewer than three corners left out"]);
+        assert_eq!(scene.warnings, ["polygon with fewer than three corners ignored"]);
     }
 }
 
 #[test]
-fn corners_share_vertices_within_a_shape_where_normals_agree() {
+fn corners_with_equal_normals_share_vertices_within_a_shape() {
     let (o, x, y, z) = (DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z);
     let scene = built(|b| {
         b.polygon(&[o, x, y], &[]).unwrap();
         b.polygon(&[x, x + y, y], &[]).unwrap(); // the same plane
         b.polygon(&[o, z, x], &[]).unwrap(); // a sharp edge
-        b.polygon(&[o, x, y], &[z * 7.0, z, DVec3::ZERO]).unwrap(); // the same, said otherwise
+        b.polygon(&[o, x, y], &[z * 7.0, z, DVec3::ZERO]).unwrap(); // equal normals in another form
         b.new_shape();
         b.polygon(&[o, x, y], &[]).unwrap();
     });
     assert_eq!((scene.vertices.len(), scene.triangles.len()), (4 + 3 + 3, 5));
-    assert_eq!(scene.warnings, ["normal of no length: the polygon's own taken"]);
+    assert_eq!(scene.warnings, ["normal of length zero: replaced by the polygon's"]);
 }
 
 #[test]
-fn flat_polygons_share_vertices_with_the_ones_before_them_in_the_plane() {
+fn consecutive_coplanar_flat_polygons_share_vertices() {
     let (o, x, y, z) = (DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z);
     let scene = built(|b| {
         b.flat_polygon(&[o, x, x + y, y]).unwrap();
@@ -175,12 +175,12 @@ fn flat_polygons_share_vertices_with_the_ones_before_them_in_the_plane() {
         b.flat_polygon(&[x, y]).unwrap();
     });
     assert_eq!((scene.vertices.len(), scene.triangles.len()), (5 + 3 + 3 + 3, 6));
-    assert_eq!(scene.warnings, ["polygon with fewer than three corners left out"]);
+    assert_eq!(scene.warnings, ["polygon with fewer than three corners ignored"]);
     normals_face_out(&scene);
 }
 
 #[test]
-fn materials_are_kept_once_and_brought_into_range() {
+fn equal_materials_are_stored_once_and_values_are_clamped() {
     let red = Material::matt(Vec3::X);
     let scene = built(|b| {
         for material in [red, Material::matt(Vec3::Y), red, Material { reflectivity: 7.0, exponent: f32::NAN, ..red }] {
@@ -194,7 +194,7 @@ fn materials_are_kept_once_and_brought_into_range() {
 }
 
 #[test]
-fn there_is_an_end_to_growth() {
+fn memory_and_coordinates_are_limited() {
     let mut builder = MeshBuilder::default();
     builder.read(1000);
     let fault = (0..100_000).find_map(|_| builder.sphere(DVec3::ZERO, 1.0, 64).err()).expect("a limit");

@@ -1,9 +1,9 @@
-//! Colours without brightness: CIE chromaticities, from spectra as well.
+//! CIE chromaticities, from coordinates, spectra and black bodies.
 
 use glam::{DMat3, DVec3};
 use std::sync::LazyLock;
 
-/// CIE 1931 (x, y). The default is neutral: equal energy.
+/// CIE 1931 chromaticity coordinates (x, y). The default is the equal-energy point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chromaticity {
     x: f64,
@@ -16,18 +16,18 @@ impl Default for Chromaticity {
     }
 }
 
-/// From CIE XYZ to linear Rec. 709 (sRGB).
+/// The conversion from CIE XYZ to linear Rec. 709 (sRGB).
 const RGB: DMat3 = DMat3::from_cols_array_2d(&[
     [3.240_97, -0.969_244, 0.055_630_1],
     [-1.537_383, 1.875_968, -0.203_977],
     [-0.498_611, 0.041_555, 1.056_972],
 ]);
 
-/// Weights of linear red, green and blue in luminance.
+/// Weights of linear red, green and blue in the luminance (Rec. 709).
 const LUMINANCE: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);
 
 impl Chromaticity {
-    /// Chromaticity coordinates, if there is such a colour.
+    /// The chromaticity with these coordinates, if they are valid.
     pub fn new(x: f64, y: f64) -> Option<Chromaticity> {
         (x >= 0.0 && y >= 0.0 && x + y > 0.0 && x + y <= 1.0 + 1e-6).then_some(Chromaticity { x, y })
     }
@@ -37,26 +37,26 @@ impl Chromaticity {
         (sum > 0.0 && sum.is_finite()).then(|| Chromaticity { x: xyz.x / sum, y: xyz.y / sum })
     }
 
-    /// XYZ of luminance one.
+    /// The colour in XYZ with luminance 1.
     fn xyz(self) -> DVec3 {
-        // A colour without luminance (y = 0) is as near to one as numbers get
+        // y is limited from below, because colours with y = 0 have no luminance.
         let y = self.y.max(1e-3);
         DVec3::new(self.x / y, 1.0, (1.0 - self.x - self.y).max(0.0) / y)
     }
 
-    /// Linear red, green and blue of luminance one; what is outside of what they can show is brought inside. Neutral is
+    /// The colour in linear Rec. 709 with luminance 1; out-of-gamut colours are clipped. The equal-energy point is
     /// white.
     pub fn rgb(self) -> DVec3 {
         let rgb = (RGB * self.xyz() / (RGB * DVec3::ONE)).max(DVec3::ZERO);
         rgb / rgb.dot(LUMINANCE).max(1e-6)
     }
 
-    /// Colours mixed by their luminances.
+    /// The mixture of colours, weighted by luminance.
     pub fn mix(parts: &[(f64, Chromaticity)]) -> Option<Chromaticity> {
         Chromaticity::of_xyz(parts.iter().fold(DVec3::ZERO, |sum, (weight, colour)| sum + colour.xyz() * *weight))
     }
 
-    /// A spectrum: values at even steps from one wavelength (nm) to another, zero outside.
+    /// The chromaticity of a spectrum: values at evenly spaced wavelengths (nm) from `from` to `to`, zero outside.
     pub fn spectrum(from: f64, to: f64, values: &[f64]) -> Option<Chromaticity> {
         if values.len() < 2 || to <= from {
             return None;
@@ -72,12 +72,12 @@ impl Chromaticity {
         })
     }
 
-    /// A black body at a temperature in kelvin (Planck's law).
+    /// The chromaticity of a black body at a temperature in kelvin (Planck's law).
     pub fn black_body(kelvin: f64) -> Option<Chromaticity> {
         if kelvin <= 0.0 {
             return None;
         }
-        // The second radiation constant, in nm K; relative to 560 nm, so that cold bodies do not vanish
+        // The second radiation constant in nm K. Values are relative to 560 nm, so that cold bodies do not underflow.
         let exponent = |wavelength: f64| 1.438_777e7 / (wavelength * kelvin);
         let scale = exponent(560.0);
         let whole = 1.0 - (-scale).exp();
@@ -88,11 +88,11 @@ impl Chromaticity {
     }
 }
 
-/// Wavelengths at which a spectrum is looked at.
+/// Number of wavelengths at which a spectrum is sampled.
 pub const SAMPLES: usize = 81;
 
-/// Those wavelengths with the CIE's colour matching functions there, as sums of Gaussian lobes (Wyman, Sloan and Shirley
-/// 2013). Made once: a file may have a spectrum in every line.
+/// The sampled wavelengths with the CIE's colour matching functions, as sums of Gaussian lobes (Wyman, Sloan and
+/// Shirley 2013). They are computed once, because a file may have a spectrum in every line.
 static MATCHING: LazyLock<[(f64, DVec3); SAMPLES]> = LazyLock::new(|| {
     let lobe = |wavelength: f64, center: f64, below: f64, above: f64| {
         let t = (wavelength - center) * if wavelength < center { below } else { above };
@@ -108,7 +108,7 @@ static MATCHING: LazyLock<[(f64, DVec3); SAMPLES]> = LazyLock::new(|| {
     })
 });
 
-/// The colour of a spectrum.
+/// The chromaticity of a spectral power distribution.
 fn integrate(spectrum: impl Fn(f64) -> f64) -> Option<Chromaticity> {
     let matching = MATCHING.iter();
     Chromaticity::of_xyz(matching.fold(DVec3::ZERO, |sum, &(wavelength, xyz)| sum + xyz * spectrum(wavelength)))
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn neutral_is_white_and_mixing_weighs_luminance() {
+    fn equal_energy_is_white_and_mixtures_are_weighted_by_luminance() {
         assert!(Chromaticity::default().rgb().abs_diff_eq(DVec3::ONE, 1e-3));
         let red = Chromaticity::new(0.64, 0.33).unwrap();
         let rgb = red.rgb();

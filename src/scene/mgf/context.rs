@@ -5,19 +5,19 @@ use foldhash::fast::RandomState;
 use hashbrown::HashTable;
 use std::hash::BuildHasher;
 
-/// The contexts of one kind.
+/// All contexts of one kind.
 pub struct Contexts<T> {
     names: Names,
-    /// By the names' numbers; the one without a name comes first.
+    /// Contexts by the number of their name; the first is the unnamed context.
     all: Vec<T>,
     current: usize,
 }
 
-/// Names, numbered from 1 in the order in which they come. One text holds them all: files name nearly every vertex, and
-/// an allocation and a key for each would take more memory than the scene.
+/// Names, numbered from 1 in the order of their definition. All names are stored in one buffer: files name nearly every
+/// vertex, so that an allocation per name would take more memory than the scene.
 struct Names {
     text: Vec<u8>,
-    /// Where name `i` ends in the text; name 0 is nobody's.
+    /// End of name `i` in the text; name 0 is empty.
     ends: Vec<u32>,
     numbers: HashTable<u32>,
     hasher: RandomState,
@@ -39,7 +39,7 @@ impl Names {
         found.map(|&number| number as usize)
     }
 
-    /// The number of a name, and whether it is new.
+    /// Adds a name, unless it exists. Returns its number, and whether it is new.
     fn add(&mut self, name: &[u8]) -> Result<(usize, bool), Fault> {
         let hash = self.hasher.hash_one(name);
         if let Some(number) = self.find_hashed(name, hash) {
@@ -69,7 +69,7 @@ impl<T: Default> Default for Contexts<T> {
 }
 
 impl<T: Clone + Default> Contexts<T> {
-    /// `[id [= [template]]]`: makes a context current, an old one or a new one.
+    /// Makes a context current, as the arguments `[id [= [template]]]` demand.
     pub fn select(&mut self, arguments: &[&[u8]]) -> Result<(), Fault> {
         match *arguments {
             [] => self.start(0, T::default()),
@@ -85,7 +85,7 @@ impl<T: Clone + Default> Contexts<T> {
             }
             _ => {
                 let hint = "write nothing, a name, `name =` or `name = template`";
-                return Err(Fault::new(None, "this selects no context", hint));
+                return Err(Fault::new(None, "the arguments do not select a context", hint));
             }
         }
         Ok(())
@@ -96,11 +96,11 @@ impl<T: Clone + Default> Contexts<T> {
         self.current = place;
     }
 
-    /// The place of a name, which may be new.
+    /// The index of the context with this name, which is created if necessary.
     fn place_of_new(&mut self, name: &[u8]) -> Result<usize, Fault> {
         let (place, new) = self.names.add(name)?;
         if new {
-            // Half as much again, not twice as much: this is most of what reading takes
+            // Grows by a half instead of doubling: this is most of the memory while reading.
             if self.all.len() == self.all.capacity() {
                 self.all.reserve_exact(16 + self.all.len() / 2);
             }
@@ -109,13 +109,11 @@ impl<T: Clone + Default> Contexts<T> {
         Ok(place)
     }
 
-    /// The current context.
     pub fn current(&self) -> &T {
         &self.all[self.current]
     }
 
-    /// The current context, to be changed.
-    pub fn change(&mut self) -> &mut T {
+    pub fn current_mut(&mut self) -> &mut T {
         &mut self.all[self.current]
     }
 
@@ -127,7 +125,7 @@ impl<T: Clone + Default> Contexts<T> {
     fn place(&self, name: &[u8]) -> Result<usize, Fault> {
         self.names.find(name).ok_or_else(|| {
             let problem = format!("{} is not defined", quote_bytes(name));
-            Fault::new(None, problem, "define it before, with `NAME =`")
+            Fault::new(None, problem, "define it with `NAME =` before it is used")
         })
     }
 }

@@ -1,72 +1,72 @@
-//! Entities one after another: contexts, materials, transforms, includes.
+//! Reads the sequence of entities: contexts, materials, transforms, includes.
 
 use super::colour::{Chromaticity, SAMPLES};
-use super::materials::Share;
-use super::transform::{Places, number_of};
-use super::{MAX_DEPTH, Reader};
+use super::materials::ColouredAmount;
+use super::transform::{InstanceTransforms, number_of};
+use super::{MAX_DEPTH, MgfReader};
 use crate::scene::mesh_builder::unit;
-use crate::scene::text::{Fault, Trouble, Words, quote_bytes};
+use crate::scene::text::{Fault, ReadError, Tokenizer, quote_bytes};
 use glam::DVec3;
 use std::path::Path;
 
-/// Bytes that are gone through in the time of a word.
+/// Number of bytes that are scanned in the time of a token.
 const BYTES_PER_WORD: usize = 16;
 
-/// The words of an entity that follow its name, in place of those before.
-fn arguments<'a>(words: &mut Words<'a>, found: &mut Vec<&'a [u8]>) {
+/// Replaces `found` by the arguments of an entity.
+fn arguments<'a>(tokens: &mut Tokenizer<'a>, found: &mut Vec<&'a [u8]>) {
     found.clear();
-    while let Some(word) = words.next_on_line() {
+    while let Some(word) = tokens.next_on_line() {
         found.push(word);
     }
 }
 
-/// So many numbers, and no more.
+/// Parses exactly `N` numbers.
 fn numbers<const N: usize>(arguments: &[&[u8]]) -> Result<[f64; N], Fault> {
-    let words: [&[u8]; N] = arguments
-        .try_into()
-        .map_err(|_| Fault::new(None, format!("{} arguments where {N} numbers are needed", arguments.len()), ""))?;
+    let tokens: [&[u8]; N] = arguments.try_into().map_err(|_| {
+        Fault::new(None, format!("there are {} arguments, but {N} numbers are needed", arguments.len()), "")
+    })?;
     let mut values = [0.0; N];
-    for (value, word) in values.iter_mut().zip(words) {
+    for (value, word) in values.iter_mut().zip(tokens) {
         *value = number_of(word)?;
     }
     Ok(values)
 }
 
-impl Reader {
-    /// Goes through entities up to the end of the file, or of the `xf` that began in line `begun`.
-    pub(super) fn block(&mut self, path: &Path, words: &mut Words, begun: Option<usize>) -> Result<(), Trouble> {
+impl MgfReader {
+    /// Reads entities until the end of the file, or of the transform that began in line `begun`.
+    pub(super) fn block(&mut self, path: &Path, tokens: &mut Tokenizer, begun: Option<usize>) -> Result<(), ReadError> {
         self.depth += 1;
         if self.depth > MAX_DEPTH {
-            let problem = format!("more than {MAX_DEPTH} transforms and files inside each other");
+            let problem = format!("transforms and files are nested more than {MAX_DEPTH} levels deep");
             return Err(Fault::new(None, problem, "flatten the hierarchy").into());
         }
         let mut following = Vec::new();
-        while let Some(entity) = words.next() {
-            let line = words.line();
+        while let Some(entity) = tokens.next() {
+            let line = tokens.line();
             if entity[0] == b'#' {
-                words.skip_line();
+                tokens.skip_line();
                 continue;
             }
             if entity == b"p"
-                && let Some(position) = words.plain_numbers_on_line()
+                && let Some(position) = tokens.plain_numbers_on_line()
             {
-                // Half of what most files consist of
-                self.pass(1 + position.len()).map_err(|fault| fault.at(line))?;
-                self.vertices.change().position = DVec3::from(position);
+                // This fast path covers half of the lines of most files.
+                self.count_work(1 + position.len()).map_err(|fault| fault.at(line))?;
+                self.vertices.current_mut().position = DVec3::from(position);
                 continue;
             }
-            arguments(words, &mut following);
-            self.pass(1 + following.len()).map_err(|fault| fault.at(line))?;
+            arguments(tokens, &mut following);
+            self.count_work(1 + following.len()).map_err(|fault| fault.at(line))?;
             match (entity, following.as_slice()) {
                 (b"xf", []) => {
                     if begun.is_none() {
-                        return Err(Fault::new(Some(line), "`xf` ends no transform", "remove it").into());
+                        return Err(Fault::new(Some(line), "`xf` closes no transform", "remove it").into());
                     }
                     self.depth -= 1;
                     return Ok(());
                 }
-                (b"xf", arguments) => self.transformed(path, words, arguments, line)?,
-                (b"i", arguments) => self.include(path, arguments).map_err(|trouble| trouble.at(line))?,
+                (b"xf", arguments) => self.transformed(path, tokens, arguments, line)?,
+                (b"i", arguments) => self.include(path, arguments).map_err(|error| error.at(line))?,
                 (entity, arguments) => {
                     self.entity(entity, arguments).map_err(|fault| {
                         let problem = format!("{}: {}", String::from_utf8_lossy(entity), fault.problem);
@@ -79,75 +79,81 @@ impl Reader {
         match begun {
             None => Ok(()),
             Some(line) => {
-                let problem = "the transform that begins here has no `xf` that ends it in this file";
+                let problem = "the transform that begins here has no closing `xf` in this file";
                 Err(Fault::new(Some(line), problem, "the file is truncated or an `xf` is missing").into())
             }
         }
     }
 
-    /// `xf`: goes through its lines once for each place.
-    fn transformed(&mut self, path: &Path, words: &mut Words, arguments: &[&[u8]], line: usize) -> Result<(), Trouble> {
-        let places = Places::new(arguments).map_err(|fault| fault.at(line))?;
-        // They stay while others are made inside
-        self.mesh.charge(places.bytes()).map_err(|fault| fault.at(line))?;
-        let start = words.clone();
+    /// Reads the block of an `xf` once for each of its instances.
+    fn transformed(
+        &mut self,
+        path: &Path,
+        tokens: &mut Tokenizer,
+        arguments: &[&[u8]],
+        line: usize,
+    ) -> Result<(), ReadError> {
+        let instances = InstanceTransforms::new(arguments).map_err(|fault| fault.at(line))?;
+        // The transforms live while the block is read.
+        self.mesh.charge(instances.bytes()).map_err(|fault| fault.at(line))?;
+        let start = tokens.clone();
         let mut end = None;
-        for place in places.all() {
-            *words = start.clone();
-            self.pass(1).map_err(|fault| fault.at(line))?;
-            self.mesh.push(place).map_err(|fault| fault.at(line))?;
+        for transform in instances.all() {
+            *tokens = start.clone();
+            self.count_work(1).map_err(|fault| fault.at(line))?;
+            self.mesh.push(transform).map_err(|fault| fault.at(line))?;
             self.emitters.new_group();
-            self.block(path, words, Some(line))?;
-            // Comments, blanks and what is passed over take time as well
-            self.pass((start.left() - words.left()) / BYTES_PER_WORD).map_err(|fault| fault.at(line))?;
+            self.block(path, tokens, Some(line))?;
+            // Comments, blanks and ignored entities take time as well.
+            self.count_work((start.left() - tokens.left()) / BYTES_PER_WORD).map_err(|fault| fault.at(line))?;
             self.mesh.pop();
             self.emitters.new_group();
-            end = Some(words.clone());
+            end = Some(tokens.clone());
         }
-        self.mesh.discharge(places.bytes());
+        self.mesh.discharge(instances.bytes());
         if end.is_none() {
-            // An array of nothing: its lines are passed over
+            // The array is empty: its block is skipped.
             let mut open = 1;
             while open > 0 {
-                match words.next() {
-                    Some(b"xf") => open = if words.peek_on_line().is_some() { open + 1 } else { open - 1 },
-                    Some(_) => words.skip_line(),
+                match tokens.next() {
+                    Some(b"xf") => open = if tokens.peek_on_line().is_some() { open + 1 } else { open - 1 },
+                    Some(_) => tokens.skip_line(),
                     None => break,
                 }
-                words.skip_line();
+                tokens.skip_line();
             }
-            self.pass((start.left() - words.left()) / BYTES_PER_WORD).map_err(|fault| fault.at(line))?;
+            self.count_work((start.left() - tokens.left()) / BYTES_PER_WORD).map_err(|fault| fault.at(line))?;
         }
         Ok(())
     }
 
-    /// `i FILE [transform]`.
-    fn include(&mut self, path: &Path, arguments: &[&[u8]]) -> Result<(), Trouble> {
+    /// Reads the file of `i FILE [transform]` once for each of its instances.
+    fn include(&mut self, path: &Path, arguments: &[&[u8]]) -> Result<(), ReadError> {
         let Some((name, transform)) = arguments.split_first() else {
-            return Err(Fault::new(None, "`i` names no file", "").into());
+            return Err(Fault::new(None, "`i` has no file name", "").into());
         };
-        let places = Places::new(transform)?;
-        self.mesh.charge(places.bytes())?;
-        for place in places.all() {
+        let instances = InstanceTransforms::new(transform)?;
+        self.mesh.charge(instances.bytes())?;
+        for transform in instances.all() {
             let known = self.includes.bytes();
             let (path, bytes) = self.includes.open(path, name)?;
             self.mesh.read(self.includes.bytes() - known);
-            self.mesh.push(place)?;
+            self.mesh.push(transform)?;
             self.emitters.new_group();
             self.file(&path, &bytes)?;
             self.mesh.pop();
             self.emitters.new_group();
             self.includes.close();
         }
-        self.mesh.discharge(places.bytes());
+        self.mesh.discharge(instances.bytes());
         Ok(())
     }
 
     fn entity(&mut self, entity: &[u8], arguments: &[&[u8]]) -> Result<(), Fault> {
         match entity {
             b"v" => self.vertices.select(arguments)?,
-            b"p" => self.vertices.change().position = DVec3::from(numbers(arguments)?),
-            b"n" => self.vertices.change().normal = unit(DVec3::from(numbers(arguments)?)).as_vec3(),
+            b"p" => self.vertices.current_mut().position = DVec3::from(numbers(arguments)?),
+            b"n" => self.vertices.current_mut().normal = unit(DVec3::from(numbers(arguments)?)).as_vec3(),
             b"c" => self.colours.select(arguments)?,
             b"cxy" | b"cspec" | b"cct" | b"cmix" => self.colour(entity, arguments)?,
             b"m" => {
@@ -160,18 +166,18 @@ impl Reader {
                 self.mesh.new_shape();
                 self.emitters.new_group();
             }
-            b"ies" => self.mesh.warnings.add("`ies`: luminaire data passed over"),
+            b"ies" => self.mesh.warnings.add("`ies`: luminaire data ignored"),
             b"f" | b"fh" | b"sph" | b"cyl" | b"cone" | b"prism" | b"ring" | b"torus" => {
                 self.shape(entity, arguments)?
             }
-            other => self.mesh.warnings.add(&format!("unknown entity {} passed over", quote_bytes(other))),
+            other => self.mesh.warnings.add(&format!("unknown entity {} ignored", quote_bytes(other))),
         }
         Ok(())
     }
 
     fn colour(&mut self, entity: &[u8], arguments: &[&[u8]]) -> Result<(), Fault> {
         if matches!(entity, b"cspec" | b"cct") {
-            self.pass(SAMPLES)?;
+            self.count_work(SAMPLES)?;
         }
         let found = match entity {
             b"cxy" => {
@@ -197,8 +203,8 @@ impl Reader {
                 Chromaticity::mix(&arguments.chunks(2).map(pair).collect::<Result<Vec<_>, Fault>>()?)
             }
         };
-        let none = || Fault::new(None, "there is no such colour", "is something negative, or all of it zero?");
-        *self.colours.change() = found.ok_or_else(none)?;
+        let none = || Fault::new(None, "the colour is not valid", "values must not be negative or all zero");
+        *self.colours.current_mut() = found.ok_or_else(none)?;
         Ok(())
     }
 
@@ -208,16 +214,16 @@ impl Reader {
             _ => numbers(arguments).map(|[amount]| (amount, 0.0))?,
         };
         if amount < 0.0 || roughness < 0.0 {
-            return Err(Fault::new(None, "a negative amount of light", "give 0 or more"));
+            return Err(Fault::new(None, "the amount of light or the roughness is negative", "give 0 or more"));
         }
-        let share = Share { amount, colour: *self.colours.current() };
-        let material = self.materials.change();
+        let amount = ColouredAmount { amount, colour: *self.colours.current() };
+        let material = self.materials.current_mut();
         match entity {
-            b"rd" => material.diffuse = share,
-            b"td" => material.through = share,
-            b"ed" => material.emitted = share,
-            b"rs" => (material.specular, material.roughness) = (share, roughness),
-            _ => material.transparent = share,
+            b"rd" => material.diffuse = amount,
+            b"td" => material.translucent = amount,
+            b"ed" => material.emitted = amount,
+            b"rs" => (material.specular, material.roughness) = (amount, roughness),
+            _ => material.transparent = amount,
         }
         self.material_set = false;
         Ok(())

@@ -1,50 +1,50 @@
-//! Emitting surfaces as point lights.
+//! Converts emissive surfaces to point lights.
 //!
-//! Emitting triangles that follow each other in one object and place, of one material, are one lamp. A lamp becomes a point
-//! light in the middle of its area, a thousandth of the scene's diagonal in front of it; one that faces all ways (a tube, a
-//! bulb) has its light outside, on the side of the scene's middle. Where there are more than [`MAX_LIGHTS`], the lamps that
-//! are farthest from each other stay, beginning with the most powerful, and take over the power of those that are nearest to
-//! them.
+//! Consecutive emissive triangles of one material, in one object and one instance, are one lamp. A lamp becomes a point
+//! light at the centroid of its area, moved by a thousandth of the scene's diagonal along its normal. A lamp that emits
+//! in all directions (a tube, a bulb) has its light outside of it, towards the centre of the scene. If there are more
+//! than [`MAX_LIGHTS`] lamps, farthest-point sampling selects [`MAX_LIGHTS`] of them, beginning with the most powerful;
+//! each takes over the power of the lamps nearest to it.
 //!
-//! A lamp's power is its area times what it emits. Point lights of this program do not fade with distance, so their
-//! luminances are shares of the whole: together they are one.
+//! The power of a lamp is its area times its emittance. Point lights have no attenuation in this program, so the lights
+//! are scaled such that their mean channels sum up to 1.
 
 use crate::scene::{Light, Scene};
 use glam::{DVec3, Vec3};
 use std::ops::Range;
 
-/// Most lights: each costs a shadow ray per pixel.
+/// The largest number of lights that lamps are converted to; every light costs a shadow ray per pixel.
 pub const MAX_LIGHTS: usize = 8;
 
-/// Triangles of one lamp.
+/// The triangles of one lamp.
 struct Lamp {
     triangles: Range<usize>,
-    /// Object and place.
+    /// Number of the object or instance that the triangles belong to.
     group: usize,
-    /// What a unit of area emits, linear RGB.
+    /// Emittance, in linear RGB.
     emitted: DVec3,
 }
 
-/// The emitting surfaces of a scene.
+/// The emissive surfaces of a scene.
 #[derive(Default)]
 pub struct Emitters {
     lamps: Vec<Lamp>,
     group: usize,
 }
 
-/// A lamp in the whole.
-struct Source {
+/// The point light of a lamp.
+struct LampLight {
     position: Vec3,
     power: DVec3,
 }
 
 impl Emitters {
-    /// Something else begins: an object or a place.
+    /// Starts a new object or instance.
     pub fn new_group(&mut self) {
         self.group += 1;
     }
 
-    /// These triangles emit light.
+    /// Adds emissive triangles.
     pub fn add(&mut self, triangles: Range<usize>, emitted: DVec3) {
         match self.lamps.last_mut() {
             Some(last)
@@ -56,26 +56,27 @@ impl Emitters {
         }
     }
 
-    /// Lights the scene.
-    pub fn light(self, scene: &mut Scene) {
+    /// Sets the lights of the scene.
+    pub fn set_lights(self, scene: &mut Scene) {
         let bounds = scene.bounds();
         let offset = bounds.diagonal() * 1e-3;
-        let mut sources: Vec<Source> =
-            self.lamps.iter().filter_map(|lamp| source(scene, lamp, bounds.center(), offset)).collect();
+        let mut sources: Vec<LampLight> =
+            self.lamps.iter().filter_map(|lamp| lamp_light(scene, lamp, bounds.center(), offset)).collect();
         let total: f64 = sources.iter().map(|s| s.power.element_sum() / 3.0).sum();
         if !(total > 0.0 && total.is_finite()) {
             return;
         }
         let lamps = sources.len();
-        let lights = strongest_and_farthest(&mut sources);
+        let lights = farthest_point_sampling(&mut sources);
         if lamps > lights.len() {
-            scene.warnings.push(format!("{lamps} emitting surfaces shown as {} point lights", lights.len()));
+            scene.warnings.push(format!("{lamps} emissive surfaces merged into {} point lights", lights.len()));
         }
         scene.lights = lights.iter().map(|s| Light::new(s.position, (s.power / total).as_vec3())).collect();
     }
 }
 
-fn source(scene: &Scene, lamp: &Lamp, middle: Vec3, offset: f32) -> Option<Source> {
+/// The light of a lamp; `None` if the lamp has no area.
+fn lamp_light(scene: &Scene, lamp: &Lamp, middle: Vec3, offset: f32) -> Option<LampLight> {
     let (mut area, mut center, mut facing) = (0.0, DVec3::ZERO, DVec3::ZERO);
     for index in lamp.triangles.clone() {
         let [a, b, c] = scene.corners(index as u32).map(|corner| corner.as_dvec3());
@@ -95,14 +96,15 @@ fn source(scene: &Scene, lamp: &Lamp, middle: Vec3, offset: f32) -> Option<Sourc
         let reach = corners.map(|corner| center.distance(corner.into())).fold(0.0, f32::max);
         center + (middle - center).normalize_or(Vec3::NEG_Z) * (reach + offset)
     };
-    Some(Source { position, power: lamp.emitted * area })
+    Some(LampLight { position, power: lamp.emitted * area })
 }
 
-fn strongest_and_farthest(sources: &mut Vec<Source>) -> Vec<Source> {
-    // Stable: of equal ones the first in the file
+/// Selects at most [`MAX_LIGHTS`] lights, and adds the power of each other light to the nearest of them.
+fn farthest_point_sampling(sources: &mut Vec<LampLight>) -> Vec<LampLight> {
+    // The sort is stable: lights of equal power stay in file order.
     sources.sort_by(|a, b| b.power.element_sum().total_cmp(&a.power.element_sum()));
     let mut lights = vec![sources.remove(0)];
-    // Distance of every other to its nearest light
+    // Squared distance of every remaining light to the nearest selected one
     let mut gaps: Vec<f32> = sources.iter().map(|s| s.position.distance_squared(lights[0].position)).collect();
     while lights.len() < MAX_LIGHTS && !sources.is_empty() {
         let farthest = (0..gaps.len()).fold(0, |best, i| if gaps[i] > gaps[best] { i } else { best });
@@ -114,7 +116,7 @@ fn strongest_and_farthest(sources: &mut Vec<Source>) -> Vec<Source> {
         lights.push(light);
     }
     for source in sources.iter() {
-        let far = |light: &Source| light.position.distance_squared(source.position);
+        let far = |light: &LampLight| light.position.distance_squared(source.position);
         if let Some(nearest) = lights.iter_mut().min_by(|a, b| far(a).total_cmp(&far(b))) {
             nearest.power += source.power;
         }

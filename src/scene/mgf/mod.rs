@@ -1,17 +1,19 @@
-//! MGF, the Materials and Geometry Format of Radiance (Ward 1995, version 2).
+//! Reader of MGF, the Materials and Geometry Format of Radiance (Ward 1995, version 2).
 //!
-//! An entity is a line, which a backslash right before its end continues. What it means depends on three contexts (vertex, colour, material), which may have names, and on
-//! the transform; `xf` with arrays goes through its lines once for each place.
+//! An entity is a line; a backslash directly before the end of a line continues it. The meaning of an entity depends on
+//! the current vertex, colour and material contexts, which can have names, and on the transform. A block of `xf` with
+//! arrays is read once for each instance.
 //!
-//! **Shading.** What lets light through is shown opaque, with a warning. The diffuse colour is the reflectance `rd`, with
-//! it what is let through diffusely (`td`) and half of what is let through straight (`ts`, or glass were black); the specular
-//! colour is `rs`. A surface whose roughness is at most [`materials::SMOOTH`] mirrors as much as it reflects specularly; the
-//! Phong exponent follows from the roughness. Ambient light is a tenth of the diffuse colour, and emitting surfaces show
-//! their own. `ies`, `ir` and `sides` are passed over.
+//! **Shading.** Transparent surfaces are rendered opaque, with a warning. The diffuse colour is the sum of the diffuse
+//! reflectance (`rd`), the diffuse transmittance (`td`), and half of the specular transmittance (`ts`), without which
+//! glass would be black. The specular colour is `rs`. A surface with a roughness of at most [`materials::SMOOTH`] is a
+//! mirror with the reflectivity `rs`; the Phong exponent is computed from the roughness. The ambient colour is a tenth
+//! of the diffuse colour, plus the emission. `ies`, `ir` and `sides` are ignored.
 //!
-//! **Lights.** Emitting surfaces become point lights, see [`lights`].
+//! **Lights.** Emissive surfaces become point lights, see [`lights`].
 //!
-//! **Curved surfaces** have [`SEGMENTS`] segments around as in the format's own library (five in a quarter).
+//! **Curved surfaces** have [`SEGMENTS`] segments around their axis, as in the format's reference implementation (five
+//! per quarter).
 
 mod colour;
 mod context;
@@ -22,62 +24,64 @@ mod shapes;
 mod transform;
 
 use super::mesh_builder::MeshBuilder;
-use super::text::{Fault, Includes, Syntax, Trouble, Words};
+use super::text::{Fault, Includes, ReadError, Syntax, Tokenizer};
 use super::{Options, Scene};
 use crate::error::{Error, Result};
 use colour::Chromaticity;
 use context::Contexts;
 use glam::{DVec3, Vec3};
 use lights::Emitters;
-use materials::Surface;
+use materials::MaterialContext;
 use std::path::Path;
 
-/// Segments around a curved surface.
+/// The default number of segments around a curved surface.
 pub const SEGMENTS: u32 = 20;
 
-/// Most blocks and files inside each other.
+/// The largest nesting depth of blocks and files.
 const MAX_DEPTH: usize = 100;
 
-/// Words that may be gone through in all, repetitions counted: so many in any case, and so many more per byte of the files.
-const WORDS: usize = 2_000_000;
-const WORDS_PER_BYTE: usize = 16;
+/// The limit of tokens that are read, counting repetitions, is `TOKENS` plus `TOKENS_PER_BYTE` per byte of the files.
+const TOKENS: usize = 2_000_000;
+const TOKENS_PER_BYTE: usize = 16;
 
-/// A comment is an entity here: `#` may stand within names.
+/// A comment is an entity in this format, since names may contain `#`.
 static SYNTAX: Syntax = Syntax::new(b"", b"").with_continued_lines();
 
 /// A vertex context.
 #[derive(Clone, Copy, Default)]
-struct Point {
+struct VertexContext {
     position: DVec3,
-    /// Of length one; zero where the surface's own normal is meant. Single precision: a file may name all its vertices.
+    /// Unit normal; zero means the normal of the surface. It is in single precision to save memory, since a file may
+    /// name all of its vertices.
     normal: Vec3,
 }
 
-struct Reader {
+struct MgfReader {
     includes: Includes,
     mesh: MeshBuilder,
     segments: u32,
-    vertices: Contexts<Point>,
+    vertices: Contexts<VertexContext>,
     colours: Contexts<Chromaticity>,
-    materials: Contexts<Surface>,
-    /// True if the mesh has the current material already.
+    materials: Contexts<MaterialContext>,
+    /// True if the mesh's material is the current material context.
     material_set: bool,
     emitters: Emitters,
-    /// Room for the vertices of a face, and for their positions: faces are many and small.
-    points: Vec<Point>,
+    /// Buffer for the vertices of a face, reused between faces.
+    points: Vec<VertexContext>,
+    /// Buffer for the positions of a face, reused between faces.
     corners: Vec<DVec3>,
     depth: usize,
-    /// Words gone through.
+    /// Number of tokens read so far.
     passed: usize,
 }
 
-/// Reads the file and what it includes.
+/// Reads the file and the files that it includes.
 ///
 /// # Errors
-/// [`crate::Error::Input`] for whatever is wrong with one of the files.
+/// [`crate::Error::Input`] if one of the files is not valid.
 pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     let (includes, bytes) = Includes::new(path, options.outside)?;
-    let mut reader = Reader {
+    let mut reader = MgfReader {
         includes,
         mesh: MeshBuilder::new(options.offset),
         segments: options.segments.unwrap_or(SEGMENTS),
@@ -102,31 +106,33 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     Ok(scene)
 }
 
-impl Reader {
-    /// The scene.
+impl MgfReader {
     fn finish(self) -> Scene {
-        let Reader { includes, mesh, vertices, emitters, .. } = self;
-        // Before the mesh is copied into less room
+        let MgfReader { includes, mesh, vertices, emitters, .. } = self;
+        // This is released before the mesh is copied to vectors of its exact size.
         drop((includes, vertices));
         let mut scene = mesh.finish();
-        emitters.light(&mut scene);
+        emitters.set_lights(&mut scene);
         scene
     }
 
-    /// Goes through one file.
+    /// Reads one file.
     fn file(&mut self, path: &Path, bytes: &[u8]) -> Result<()> {
-        let mut words = Words::new(bytes, &SYNTAX);
-        match self.block(path, &mut words, None) {
+        let mut tokens = Tokenizer::new(bytes, &SYNTAX);
+        match self.block(path, &mut tokens, None) {
             Ok(()) => Ok(()),
-            Err(trouble) => Err(Trouble::at(trouble, words.line()).of(path)),
+            Err(error) => Err(ReadError::at(error, tokens.line()).of(path)),
         }
     }
 
-    /// Counts words that are gone through.
-    fn pass(&mut self, words: usize) -> Result<(), Fault> {
-        self.passed += words;
-        if self.passed > WORDS + WORDS_PER_BYTE * self.includes.bytes() {
-            return Err(Fault::new(None, "arrays of arrays never end", "repeat less, or include less often"));
+    /// Counts tokens.
+    ///
+    /// # Errors
+    /// The limit is exceeded.
+    fn count_work(&mut self, tokens: usize) -> Result<(), Fault> {
+        self.passed += tokens;
+        if self.passed > TOKENS + TOKENS_PER_BYTE * self.includes.bytes() {
+            return Err(Fault::new(None, "nested arrays repeat too many entities", "reduce repetitions or includes"));
         }
         Ok(())
     }

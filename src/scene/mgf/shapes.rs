@@ -1,20 +1,20 @@
-//! Shapes: what becomes triangles.
+//! Converts shapes to triangles.
 
 use super::transform::number_of;
-use super::{Point, Reader};
+use super::{MgfReader, VertexContext};
 use crate::scene::polygon::newell;
 use crate::scene::text::Fault;
 use glam::{DVec3, Vec3};
 use std::cell::LazyCell;
 
-impl Reader {
-    /// Reads a shape of the current material.
+impl MgfReader {
+    /// Adds the triangles of a shape, with the current material.
     pub(super) fn shape(&mut self, entity: &[u8], arguments: &[&[u8]]) -> Result<(), Fault> {
         if !self.material_set {
             self.material_set = true;
             let material = *self.materials.current();
-            if material.transparent.amount + material.through.amount > 0.0 {
-                self.mesh.warnings.add("transparent material: shown opaque");
+            if material.transparent.amount + material.translucent.amount > 0.0 {
+                self.mesh.warnings.add("transparent material: rendered opaque");
             }
             self.mesh.set_material(material.material());
         }
@@ -47,7 +47,7 @@ impl Reader {
             (b"cyl", &[from, radius, to]) => self.cone([from, radius, to, radius])?,
             (b"cone", &[from, radius, to, radius_there]) => self.cone([from, radius, to, radius_there])?,
             (b"ring", &[center, inner, outer]) => {
-                let Point { position, normal } = *self.vertices.find(center)?;
+                let VertexContext { position, normal } = *self.vertices.find(center)?;
                 let radii = [number_of(inner)?, number_of(outer)?];
                 if radii[0] < 0.0 || radii[1] < radii[0] {
                     return Err(Fault::new(None, "the radii are not 0 <= inner < outer", "put the inner one first"));
@@ -55,8 +55,8 @@ impl Reader {
                 self.mesh.ring(position, normal.as_dvec3(), radii, self.segments)?;
             }
             (b"torus", &[center, inner, outer]) => {
-                let Point { position, normal } = *self.vertices.find(center)?;
-                // Negative radii turn it inside out
+                let VertexContext { position, normal } = *self.vertices.find(center)?;
+                // Negative radii mean that normals point inwards.
                 let (inner, outer) = (number_of(inner)?, number_of(outer)?);
                 if !(0.0 <= inner && inner < outer || outer < inner && inner <= 0.0) {
                     let hint = "put the inner one first; both are negative where the normals point inward";
@@ -71,7 +71,7 @@ impl Reader {
                 )?;
             }
             (b"prism", [names @ .., length]) => self.prism(names, number_of(length)?)?,
-            _ => return Err(Fault::new(None, format!("{} arguments are not what it takes", arguments.len()), "")),
+            _ => return Err(Fault::new(None, format!("{} arguments are the wrong number", arguments.len()), "")),
         }
         let emitted = self.materials.current().emitted;
         let after = self.mesh.triangles();
@@ -81,12 +81,12 @@ impl Reader {
         Ok(())
     }
 
-    fn points(&self, names: &[&[u8]]) -> Result<Vec<Point>, Fault> {
+    fn points(&self, names: &[&[u8]]) -> Result<Vec<VertexContext>, Fault> {
         names.iter().map(|name| self.vertices.find(name).copied()).collect()
     }
 
-    /// A face; where a vertex has no normal it is the face's own.
-    fn face(&mut self, points: &[Point], holes: &[u32]) -> Result<(), Fault> {
+    /// Adds a face; vertices without a normal have the face's normal.
+    fn face(&mut self, points: &[VertexContext], holes: &[u32]) -> Result<(), Fault> {
         let mut corners = std::mem::take(&mut self.corners);
         corners.clear();
         corners.extend(points.iter().map(|point| point.position));
@@ -97,7 +97,7 @@ impl Reader {
         }
         let outer = holes.first().map_or(corners.len(), |&first| first as usize);
         let own = LazyCell::new(|| newell(&corners[..outer]));
-        let normal = |point: &Point| if point.normal == Vec3::ZERO { *own } else { point.normal.as_dvec3() };
+        let normal = |point: &VertexContext| if point.normal == Vec3::ZERO { *own } else { point.normal.as_dvec3() };
         let normals: Vec<DVec3> = points.iter().map(normal).collect();
         self.mesh.polygon_with_holes(&corners, &normals, holes)
     }
@@ -106,20 +106,20 @@ impl Reader {
         let [from, to] = [self.vertices.find(from)?.position, self.vertices.find(to)?.position];
         let radii = [number_of(radius)?, number_of(radius_there)?];
         if radii[0] * radii[1] < 0.0 {
-            return Err(Fault::new(None, "one radius is positive, one negative", "give both the same sign"));
+            return Err(Fault::new(None, "one radius is positive and one is negative", "give both the same sign"));
         }
         self.mesh.cone((from, radii[0]), (to, radii[1]), self.segments)
     }
 
-    /// A prism: an end face that looks outward, extruded away from its normal; a negative length goes the other way, and
-    /// turns the solid inside out.
+    /// Adds a prism: an end face that faces outwards, extruded against its normal. A negative length extrudes along the
+    /// normal, so that all faces face inwards.
     fn prism(&mut self, names: &[&[u8]], length: f64) -> Result<(), Fault> {
         self.mesh.new_shape();
         let points = self.points(names)?;
         let near: Vec<DVec3> = points.iter().map(|point| point.position).collect();
         let normal = newell(&near).normalize_or_zero();
         if near.len() < 3 || normal == DVec3::ZERO || length == 0.0 {
-            self.mesh.warnings.add("prism without a volume left out");
+            self.mesh.warnings.add("prism without volume ignored");
             return Ok(());
         }
         let far: Vec<DVec3> = near.iter().map(|&corner| corner - normal * length).collect();

@@ -1,13 +1,13 @@
-//! Transforms with arrays: `-t 1 0 0 -a 5 -rz 30 -i 1 -s 2`.
+//! Transforms with arrays, such as `-t 1 0 0 -a 5 -rz 30 -i 1 -s 2`.
 
 use crate::scene::text::number;
 use crate::scene::text::{Fault, quote_bytes};
 use glam::{DAffine3, DMat3, DVec3};
 
-/// Most copies that one transform makes.
+/// The largest number of instances of one transform.
 const MAX_COPIES: usize = 100_000;
 
-/// A number among arguments.
+/// Parses an argument as a finite number.
 pub fn number_of(word: &[u8]) -> Result<f64, Fault> {
     match number::double(word) {
         Some((value, length)) if length == word.len() && value.is_finite() => Ok(value),
@@ -15,27 +15,27 @@ pub fn number_of(word: &[u8]) -> Result<f64, Fault> {
     }
 }
 
-/// A stretch of arguments that is applied several times.
-struct Stretch {
+/// A sequence of arguments that is applied repeatedly.
+struct Repeat {
     transform: DAffine3,
     times: usize,
-    /// True for copies that are applied 0, 1, 2, ... times; false if all are applied `times` times.
+    /// True for an array, in which copy `i` is transformed `i` times; false if everything is transformed `times` times.
     array: bool,
 }
 
-/// The places in which things are to be put.
-pub struct Places {
-    /// No array among them is of one copy: it would leave all as it is. Between two arrays, and before the first and behind
-    /// the last, there is at most one stretch that is none. So there are few of them, however long the line is.
-    stretches: Vec<Stretch>,
+/// The transforms of all instances of an `xf` or an include.
+pub struct InstanceTransforms {
+    /// Arrays of one copy are omitted, since they have no effect, and adjacent repeats that are not arrays are merged.
+    /// So there are few repeats even for a very long line.
+    repeats: Vec<Repeat>,
     count: usize,
 }
 
-impl Places {
-    /// Reads what follows `xf` or an include's name: one place without arrays.
-    pub fn new(arguments: &[&[u8]]) -> Result<Places, Fault> {
-        let mut places = Places { stretches: Vec::new(), count: 1 };
-        let mut stretch = Stretch { transform: DAffine3::IDENTITY, times: 1, array: false };
+impl InstanceTransforms {
+    /// Parses the arguments of `xf`, or those after the file name of an include. Without arrays there is one instance.
+    pub fn new(arguments: &[&[u8]]) -> Result<InstanceTransforms, Fault> {
+        let mut instances = InstanceTransforms { repeats: Vec::new(), count: 1 };
+        let mut repeat = Repeat { transform: DAffine3::IDENTITY, times: 1, array: false };
         let mut rest = arguments.iter();
         while let Some(&option) = rest.next() {
             let mut number = || -> Result<f64, Fault> {
@@ -54,56 +54,59 @@ impl Places {
                 b"-a" | b"-i" => {
                     let count = number()?;
                     if !(count >= 0.0 && count <= MAX_COPIES as f64 && count.fract() == 0.0) {
-                        let problem = format!("{} {count}: not a number of copies", quote_bytes(option));
+                        let problem = format!("{} {count}: this is not a number of copies", quote_bytes(option));
                         return Err(Fault::new(None, problem, format!("give 0 to {MAX_COPIES}")));
                     }
-                    places.add(stretch)?;
-                    stretch = Stretch { transform: DAffine3::IDENTITY, times: count as usize, array: option == b"-a" };
+                    instances.add(repeat)?;
+                    repeat = Repeat { transform: DAffine3::IDENTITY, times: count as usize, array: option == b"-a" };
                     continue;
                 }
                 other => {
-                    let hint = "-t, -rx, -ry, -rz, -s, -mx, -my, -mz, -i and -a";
-                    return Err(Fault::new(None, format!("{} is no part of a transform", quote_bytes(other)), hint));
+                    let hint = "options are -t, -rx, -ry, -rz, -s, -mx, -my, -mz, -i and -a";
+                    return Err(Fault::new(None, format!("{} is not a part of a transform", quote_bytes(other)), hint));
                 }
             };
-            stretch.transform = step * stretch.transform;
+            repeat.transform = step * repeat.transform;
         }
-        places.add(stretch)?;
-        Ok(places)
+        instances.add(repeat)?;
+        Ok(instances)
     }
 
-    fn add(&mut self, Stretch { transform, times, array }: Stretch) -> Result<(), Fault> {
+    fn add(&mut self, Repeat { transform, times, array }: Repeat) -> Result<(), Fault> {
         if array {
             self.count = self.count.saturating_mul(times);
             if self.count > MAX_COPIES {
-                return Err(Fault::new(None, format!("more than {MAX_COPIES} copies"), "repeat less"));
+                return Err(Fault::new(
+                    None,
+                    format!("there are more than {MAX_COPIES} copies"),
+                    "reduce the repetitions",
+                ));
             }
             if times != 1 {
-                self.stretches.push(Stretch { transform, times, array });
+                self.repeats.push(Repeat { transform, times, array });
             }
             return Ok(());
         }
-        // Squared and multiplied: many repetitions are a few steps
         let power = power(transform, times);
-        match self.stretches.last_mut().filter(|last| !last.array) {
+        match self.repeats.last_mut().filter(|last| !last.array) {
             Some(last) => last.transform = power * last.transform,
-            None => self.stretches.push(Stretch { transform: power, times: 1, array }),
+            None => self.repeats.push(Repeat { transform: power, times: 1, array }),
         }
         Ok(())
     }
 
-    /// Memory that they take.
+    /// Memory of all transforms in bytes.
     pub fn bytes(&self) -> usize {
         self.count * size_of::<DAffine3>()
     }
 
-    /// All of them, the first array's copies nearest to each other.
+    /// All transforms; the copies of the first array are adjacent.
     pub fn all(&self) -> Vec<DAffine3> {
         if self.count == 0 {
             return Vec::new();
         }
         let mut places = vec![DAffine3::IDENTITY];
-        for &Stretch { transform, times, array } in &self.stretches {
+        for &Repeat { transform, times, array } in &self.repeats {
             if array {
                 let mut all = Vec::with_capacity(places.len() * times);
                 for _ in 0..times {
@@ -119,6 +122,7 @@ impl Places {
     }
 }
 
+/// A power of a transform, by repeated squaring.
 fn power(mut base: DAffine3, mut exponent: usize) -> DAffine3 {
     let mut result = DAffine3::IDENTITY;
     while exponent > 0 {
@@ -138,21 +142,26 @@ mod tests {
     fn origins(text: &str) -> Vec<[i64; 3]> {
         let words: Vec<&[u8]> = text.split_ascii_whitespace().map(str::as_bytes).collect();
         let round = |v: DVec3| v.to_array().map(|x| (x * 1000.0).round() as i64);
-        Places::new(&words).unwrap().all().iter().map(|place| round(place.transform_point3(DVec3::X))).collect()
+        InstanceTransforms::new(&words)
+            .unwrap()
+            .all()
+            .iter()
+            .map(|place| round(place.transform_point3(DVec3::X)))
+            .collect()
     }
 
     #[test]
-    fn steps_act_one_after_another_on_what_they_find() {
+    fn steps_are_applied_in_order() {
         assert_eq!(origins(""), [[1000, 0, 0]]);
         assert_eq!(origins("-t 1 0 0 -rz 90"), [[0, 2000, 0]]);
         assert_eq!(origins("-rz 90 -t 1 0 0"), [[1000, 1000, 0]]);
         assert_eq!(origins("-rx 20 -ry 90 -s 2 -mz -my"), [[0, 0, 2000]]);
         assert_eq!(origins("-i 3 -t 1 0 0 -i 1 -s 2"), [[8000, 0, 0]]);
-        assert_eq!(origins("-i 100000 -rz 1"), [[174, -985, 0]], "these are 280 degrees and whole turns");
+        assert_eq!(origins("-i 100000 -rz 1"), [[174, -985, 0]], "280 degrees and full turns");
     }
 
     #[test]
-    fn arrays_multiply_and_the_first_stays_in_place() {
+    fn arrays_multiply_and_their_first_copy_is_not_moved() {
         assert_eq!(origins("-a 3 -t 1 0 0"), [[1000, 0, 0], [2000, 0, 0], [3000, 0, 0]]);
         assert_eq!(
             origins("-t 1 0 0 -a 2 -t 0 1 0 -a 2 -rz 180 -i 1 -t 0 0 5"),
@@ -162,18 +171,18 @@ mod tests {
     }
 
     #[test]
-    fn a_long_line_is_few_stretches() {
+    fn a_long_line_has_few_repeats() {
         let line = "-a 1 -t 1 0 0 -i 1 -mx ".repeat(1001);
         let words: Vec<&[u8]> = line.split_ascii_whitespace().map(str::as_bytes).collect();
-        assert_eq!(Places::new(&words).unwrap().stretches.len(), 1);
-        assert_eq!(origins(&line), [[-1000, 0, 0]], "mirrored an odd number of times, moved never");
+        assert_eq!(InstanceTransforms::new(&words).unwrap().repeats.len(), 1);
+        assert_eq!(origins(&line), [[-1000, 0, 0]], "mirrored an odd number of times, not moved");
     }
 
     #[test]
-    fn nonsense_is_refused() {
+    fn invalid_arguments_are_refused() {
         for text in ["-t 1 0", "-x 1", "-a 1.5", "-a -1", "-a 1e9", "-a 1000 -mx -a 101", "-s nan", "1 0 0", "-i 2e6"] {
             let words: Vec<&[u8]> = text.split_ascii_whitespace().map(str::as_bytes).collect();
-            assert!(Places::new(&words).is_err(), "{text}");
+            assert!(InstanceTransforms::new(&words).is_err(), "{text}");
         }
     }
 }

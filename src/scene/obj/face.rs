@@ -1,4 +1,4 @@
-//! Faces: corners, their vertices, triangles.
+//! Converts faces to vertices and triangles.
 
 use super::Fault;
 use super::lines::{Lines, printable};
@@ -10,16 +10,16 @@ use foldhash::fast::RandomState;
 use glam::{DVec3, Vec3};
 use std::collections::HashMap;
 
-/// What makes two corners at the same position one vertex.
+/// Corners with equal keys share a vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Key {
+pub struct VertexKey {
     /// Index into [`Faces::positions`].
     pub position: u32,
     normal: Normal,
 }
 
-impl Key {
-    /// Index into [`Faces::normals`], if the corner has one.
+impl VertexKey {
+    /// Index into [`Faces::normals`], if the corner has a normal in the file.
     pub fn normal(&self) -> Option<usize> {
         match self.normal {
             Normal::Given(index) => Some(index as usize),
@@ -30,25 +30,25 @@ impl Key {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Normal {
-    /// The file's.
+    /// The normal in the file with this index.
     Given(u32),
-    /// Smooth over all triangles of this group.
+    /// The smooth normal over all triangles of this smoothing group.
     Smooth(u32),
-    /// This face's own.
+    /// The normal of the face with this number.
     Flat(u32),
 }
 
-/// How normals are computed where the file has none.
+/// The computation of normals if the file has none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Smoothing {
-    /// Over a group; 0 is everything before the first `s`.
+    /// Smooth over this group; group 0 is in effect before the first `s`.
     Group(u32),
-    /// `s off`.
+    /// Flat, as after `s off`.
     Flat,
 }
 
 impl Smoothing {
-    /// A group by its number. 0 means off; what is no number is a group of its own.
+    /// The parameter of `s`: the number of a group, or 0 for flat shading. All other words mean one additional group.
     pub fn group(word: &[u8]) -> Smoothing {
         match std::str::from_utf8(word).ok().and_then(|text| text.parse().ok()) {
             Some(0) => Smoothing::Flat,
@@ -61,12 +61,12 @@ impl Smoothing {
 /// The end of a chain.
 const NONE: u32 = u32::MAX;
 
-/// Most vertices in a chain: further ones at its position are found by their key. Hardly any position has so many, and a
-/// chain is the faster of the two.
+/// The largest number of vertices in a chain; further vertices at a position are found in a map. Few positions have so
+/// many vertices, and short chains are faster than the map.
 const LONGEST: usize = 24;
 
-/// Memory, while vectors grow and at the end: per position and normal of the file; per vertex, which has a key, a link and
-/// finally its numbers twice; per vertex that is found by its key; per triangle; per corner of the present face.
+// Upper bounds of the memory in bytes, while vectors grow and at the end. A vertex has a key, a link, and finally two
+// copies of its position and normal; a crowded vertex also has an entry in the map.
 const PER_POSITION: usize = 32;
 const PER_NORMAL: usize = 24;
 const PER_VERTEX: usize = 112;
@@ -74,39 +74,39 @@ const PER_CROWDED: usize = 64;
 const PER_TRIANGLE: usize = 32;
 const PER_CORNER: usize = 112;
 
-/// Corners after which a face's memory is looked at.
+/// The memory of a face is checked after this number of corners.
 const MANY_CORNERS: usize = 4096;
 
-/// What has been read of vertices and faces.
+/// The vertices and triangles so far.
 pub struct Faces {
-    /// `v`.
+    /// Positions of the file (`v`), relative to the offset.
     pub positions: Vec<Vec3>,
-    /// `vn`, as they stand.
+    /// Normals of the file (`vn`), not normalised.
     pub normals: Vec<Vec3>,
-    /// One per vertex.
-    pub keys: Vec<Key>,
-    /// The next vertex at the same position.
+    /// The key of each vertex.
+    pub keys: Vec<VertexKey>,
+    /// For each vertex, the next vertex at the same position.
     next: Vec<u32>,
-    /// The first vertex at a position.
+    /// For each position, the first vertex.
     first: Vec<u32>,
-    /// Vertices that no chain has room for.
-    crowded: HashMap<Key, u32, RandomState>,
-    /// In file order.
+    /// Vertices at positions with full chains.
+    crowded: HashMap<VertexKey, u32, RandomState>,
+    /// Triangles in file order.
     pub triangles: Vec<Triangle>,
-    /// The current material.
+    /// Index of the current material.
     pub material: Option<u32>,
-    /// Faces with fewer than three corners.
+    /// Number of faces with fewer than three corners.
     pub small: usize,
     smoothing: Smoothing,
     faces: u32,
-    /// Corners of the current face: its vertices, and where they lie.
+    /// Vertices of the current face.
     corners: Vec<u32>,
+    /// Positions of the current face.
     points: Vec<DVec3>,
     triangulator: Triangulator,
-    /// What the file may take of memory.
     pub limits: Limits,
-    /// Triangles that shine.
-    pub shining: usize,
+    /// Number of emissive triangles.
+    pub emissive: usize,
 }
 
 impl Default for Faces {
@@ -127,20 +127,19 @@ impl Default for Faces {
             points: Vec::new(),
             triangulator: Triangulator::default(),
             limits: Limits::default(),
-            shining: 0,
+            emissive: 0,
         }
     }
 }
 
 impl Faces {
-    /// Tells the size of a file that is being read: what may be made of it grows.
+    /// Adds the size of a file, which raises the limits.
     pub fn read(&mut self, bytes: usize) {
         self.limits.read(bytes);
         self.triangulator.read(bytes);
     }
 
-    /// `s`.
-    pub fn smoothing(&mut self, smoothing: Smoothing) {
+    pub fn set_smoothing(&mut self, smoothing: Smoothing) {
         self.smoothing = smoothing;
     }
 
@@ -155,10 +154,10 @@ impl Faces {
                 (None, Smoothing::Group(group)) => Normal::Smooth(group),
                 (None, Smoothing::Flat) => Normal::Flat(self.faces),
             };
-            let vertex = self.vertex(Key { position, normal });
+            let vertex = self.vertex(VertexKey { position, normal });
             self.corners.push(vertex);
             if self.corners.len().is_multiple_of(MANY_CORNERS) {
-                self.hold(lines.line())?;
+                self.check_memory(lines.line())?;
             }
         }
         self.faces = self.faces.wrapping_add(1);
@@ -178,26 +177,26 @@ impl Faces {
                 }
             }
         }
-        self.hold(lines.line())
+        self.check_memory(lines.line())
     }
 
-    /// Holds the memory that all of it takes against what the file may take.
+    /// Checks the memory of all vertices and triangles against the limit.
     #[inline]
-    pub fn hold(&self, line: usize) -> Result<(), Fault> {
+    pub fn check_memory(&self, line: usize) -> Result<(), Fault> {
         let bytes = self.positions.len() * PER_POSITION
             + self.normals.len() * PER_NORMAL
             + self.keys.len() * PER_VERTEX
             + self.crowded.len() * PER_CROWDED
             + self.triangles.len() * PER_TRIANGLE
-            + self.shining * lamps::BYTES
+            + self.emissive * lamps::BYTES
             + self.corners.len() * PER_CORNER;
-        let hint = "it has many faces of few vertices: store them another way, as in a binary PLY";
-        self.limits.passing(bytes).map_err(|fault| Fault::new(line, fault.problem, hint))
+        let hint = "the file has many faces with few vertices: convert it to another format, such as binary PLY";
+        self.limits.check_temporary(bytes).map_err(|fault| Fault::new(line, fault.problem, hint))
     }
 
-    /// The vertex of that key, a new one if there is none yet.
+    /// The vertex with this key, which is created if necessary.
     #[inline]
-    fn vertex(&mut self, key: Key) -> u32 {
+    fn vertex(&mut self, key: VertexKey) -> u32 {
         let (mut at, mut length) = (self.first[key.position as usize], 0);
         while at != NONE {
             if self.keys[at as usize] == key {
@@ -221,11 +220,12 @@ impl Faces {
         index
     }
 
-    /// `position`, `position/texture`, `position//normal` or `position/texture/normal`.
+    /// Parses a corner: `position`, `position/texture`, `position//normal` or `position/texture/normal`. Returns the
+    /// indices of position and normal, counted from 0.
     #[inline]
     fn corner(&self, word: &[u8], line: usize) -> Result<(u32, Option<u32>), Fault> {
         let broken = || {
-            let problem = format!("`{}` is no corner of a face", printable(word));
+            let problem = format!("`{}` is not a corner of a face", printable(word));
             Fault::new(line, problem, "write v, v/vt, v//vn or v/vt/vn")
         };
         let (position, rest) = index(word).ok_or_else(broken)?;
@@ -233,7 +233,7 @@ impl Faces {
         let Some(rest) = rest.strip_prefix(b"/") else {
             return if rest.is_empty() { Ok((position, None)) } else { Err(broken()) };
         };
-        // The texture's index is of no use, but must be one.
+        // The index of the texture coordinate is checked and ignored.
         let rest = if rest.starts_with(b"/") || rest.is_empty() { rest } else { index(rest).ok_or_else(broken)?.1 };
         match rest.strip_prefix(b"/") {
             None if rest.is_empty() => Ok((position, None)),
@@ -247,7 +247,7 @@ impl Faces {
     }
 }
 
-/// A whole number at the start, and what follows it.
+/// Parses an integer at the start; also returns the rest.
 #[inline]
 fn index(bytes: &[u8]) -> Option<(i64, &[u8])> {
     let negative = bytes.first() == Some(&b'-');
@@ -260,13 +260,14 @@ fn index(bytes: &[u8]) -> Option<(i64, &[u8])> {
     Some((if negative { -value } else { value }, &digits[length..]))
 }
 
-/// An index that counts from 1, or backwards from the last, -1.
+/// Converts an index, which counts from 1 or backwards from -1, to one that counts from 0. `element` is its name for
+/// messages.
 #[inline]
-fn resolve(given: i64, count: usize, what: &str, line: usize) -> Result<u32, Fault> {
+fn resolve(given: i64, count: usize, element: &str, line: usize) -> Result<u32, Fault> {
     let index = if given < 0 { given + count as i64 } else { given - 1 };
     if (0..count as i64).contains(&index) {
         return Ok(index as u32);
     }
-    let problem = format!("a face uses {what} {given}, but {count} stand above it");
+    let problem = format!("a face uses {element} {given}, but {count} are defined before it");
     Err(Fault::new(line, problem, "indices count from 1, or backwards from -1"))
 }

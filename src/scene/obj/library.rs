@@ -1,21 +1,22 @@
-//! `usemtl` and `mtllib`: materials by name, and the libraries that bring them.
+//! The statements `usemtl` and `mtllib`: materials by name, and material libraries.
 
 use super::lines::{Lines, printable, without_comment};
-use super::{Fault, NAMES, Named, Reader, mtl};
+use super::{Fault, NAMES, NamedMaterial, ObjReader, mtl};
 use crate::error::{Error, Result};
-use crate::scene::text::Home;
+use crate::scene::text::SceneFolders;
 use crate::scene::{Material, read_text, sources};
 use glam::Vec3;
 use std::collections::BTreeSet;
 use std::path::{Component, Path};
 
-/// Most names of libraries: each of them is looked for.
+/// The largest number of names of libraries, each of which is searched.
 const MAX_LIBRARIES: usize = 10_000;
 
-/// Memory per material, at most: itself and what it gives off in vectors that grow, its name in a table.
+/// Upper bound of the memory per material in bytes, without its name: material and emission in growing vectors, and an
+/// entry in a map.
 const PER_MATERIAL: usize = 256;
 
-impl Reader<'_> {
+impl ObjReader<'_> {
     pub(super) fn use_material(&mut self, name: Vec<u8>, line: usize) -> Result<(), Fault> {
         let plain = without_comment(&name);
         let index = match self.names.get(&name).or_else(|| self.names.get(plain)) {
@@ -27,7 +28,7 @@ impl Reader<'_> {
                     self.commented.push(name.clone());
                 }
                 let index = self.add(name.clone(), Material::neutral(), Vec3::ZERO);
-                self.names.insert(name, Named { index, guessed: true });
+                self.names.insert(name, NamedMaterial { index, undefined: true });
                 index
             }
         };
@@ -37,62 +38,62 @@ impl Reader<'_> {
 
     pub(super) fn add(&mut self, name: Vec<u8>, material: Material, emission: Vec3) -> u32 {
         let index = self.materials.len() as u32;
-        let (material, emission) = self.lit(&name, material, emission);
+        let (material, emission) = self.apply_lamp(&name, material, emission);
         self.materials.push(material);
         self.emission.push(emission);
         self.triangles.push(0);
-        self.names.insert(name, Named { index, guessed: false });
+        self.names.insert(name, NamedMaterial { index, undefined: false });
         index
     }
 
-    /// The material and what it gives off, with what the user says of it.
-    fn lit(&self, name: &[u8], material: Material, emission: Vec3) -> (Material, Vec3) {
+    /// The material and its emission, after the option `lamp` has been applied.
+    fn apply_lamp(&self, name: &[u8], material: Material, emission: Vec3) -> (Material, Vec3) {
         let lamp = self.options.lamp.as_deref().is_some_and(|lamp| lamp.as_bytes() == name);
         let emission = if lamp && emission == Vec3::ZERO { material.diffuse } else { emission };
         (Material { ambient: material.ambient.max(emission.min(Vec3::ONE)), ..material }, emission)
     }
 
-    /// A material of a library. The first of a name counts; later ones would change faces that are already there.
+    /// Defines a material of a library. Of several with the same name the first is used.
     fn define(&mut self, name: Vec<u8>, material: Material, emission: Vec3) {
         match self.names.get_mut(&name) {
             None => drop(self.add(name, material, emission)),
-            Some(named) if named.guessed => {
-                named.guessed = false;
+            Some(named) if named.undefined => {
+                named.undefined = false;
                 let index = named.index;
-                self.fill(index, &name, material, emission);
+                self.replace(index, &name, material, emission);
             }
             Some(_) => {}
         }
     }
 
-    /// Puts a material in the place of a neutral one.
-    fn fill(&mut self, index: u32, name: &[u8], material: Material, emission: Vec3) {
+    /// Replaces the neutral material of an undefined name.
+    fn replace(&mut self, index: u32, name: &[u8], material: Material, emission: Vec3) {
         let index = index as usize;
-        let (material, emission) = self.lit(name, material, emission);
+        let (material, emission) = self.apply_lamp(name, material, emission);
         if self.emission[index] == Vec3::ZERO && emission != Vec3::ZERO {
-            self.faces.shining += self.triangles[index];
+            self.faces.emissive += self.triangles[index];
         }
         (self.materials[index], self.emission[index]) = (material, emission);
     }
 
-    /// Fills in materials whose names end with a comment, and that the library just read has without it.
-    fn fill_commented(&mut self) {
+    /// Replaces undefined materials with a comment after their name, if the last library defines the name without it.
+    fn replace_commented(&mut self) {
         for name in std::mem::take(&mut self.commented) {
-            let defined = self.names.get(without_comment(&name)).filter(|named| !named.guessed);
+            let defined = self.names.get(without_comment(&name)).filter(|named| !named.undefined);
             let from = defined.map(|named| named.index as usize);
             match (self.names.get_mut(&name), from) {
-                (Some(named), Some(from)) if named.guessed => {
-                    named.guessed = false;
+                (Some(named), Some(from)) if named.undefined => {
+                    named.undefined = false;
                     let index = named.index;
-                    self.fill(index, &name, self.materials[from], self.emission[from]);
+                    self.replace(index, &name, self.materials[from], self.emission[from]);
                 }
-                (Some(named), None) if named.guessed => self.commented.push(name),
+                (Some(named), None) if named.undefined => self.commented.push(name),
                 _ => {}
             }
         }
     }
 
-    /// `mtllib`: one name that may have blanks, or several names.
+    /// Reads the libraries of `mtllib`: one name, which may contain blanks, or several names.
     pub(super) fn libraries(&mut self, lines: &mut Lines) -> Result<()> {
         let (line, text) = (lines.line(), lines.rest());
         if !self.is_new(&text, line)? {
@@ -111,24 +112,24 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// False for a name that has been looked for.
+    /// True for a name of a library that has not been searched yet; marks it as searched.
     fn is_new(&mut self, name: &[u8], line: usize) -> Result<bool> {
         if self.tried.contains(name) {
             return Ok(false);
         }
         if self.tried.len() >= MAX_LIBRARIES {
-            let problem = format!("more than {MAX_LIBRARIES} names of material libraries");
+            let problem = format!("there are more than {MAX_LIBRARIES} names of material libraries");
             return Err(Error::file(self.path, Some(line), problem, "put the materials into one library"));
         }
         Ok(self.tried.insert(name.to_vec()))
     }
 
-    /// Reads the library of this name, if it is there.
+    /// Reads the library of this name, if it exists.
     fn library(&mut self, name: &[u8], line: usize) -> Result<()> {
         let path = self.path.parent().unwrap_or(Path::new("")).join(file_name(name));
         if !self.options.outside {
             let leaves = file_name(name).components().any(|c| !matches!(c, Component::Normal(_) | Component::CurDir));
-            if leaves || !self.home.get_or_insert_with(|| Home::of(self.path)).holds(&path) {
+            if leaves || !self.folders.get_or_insert_with(|| SceneFolders::of(self.path)).contain(&path) {
                 let problem = format!("the library {} lies outside of the scene's folder", printable(name));
                 return Err(Error::file(self.path, Some(line), problem, "allow it with the option outside=yes"));
             }
@@ -136,10 +137,10 @@ impl Reader<'_> {
         if !path.is_file() {
             sources::absent(&path);
             let name = printable(name);
-            self.warnings.add(&format!("material library {name} is not there: its materials are neutral grey"));
+            self.warnings.add(&format!("material library {name} does not exist: its materials are neutral grey"));
             return Ok(());
         }
-        // Read again, it would say nothing new
+        // A library is read once.
         if !self.libraries.insert(path.canonicalize().unwrap_or_else(|_| path.clone())) {
             return Ok(());
         }
@@ -150,24 +151,25 @@ impl Reader<'_> {
         for (name, material, emission) in library.materials {
             self.define(name, material, emission);
         }
-        self.fill_commented();
-        // More may shine than before
-        self.faces.hold(line).map_err(|fault| fault.of(self.path))
+        self.replace_commented();
+        // There may be more emissive triangles than before.
+        self.faces.check_memory(line).map_err(|fault| fault.of(self.path))
     }
 
-    /// The first in the alphabet of the names that no library has.
-    pub(super) fn unknown(&self) -> BTreeSet<String> {
-        let mut unknown = BTreeSet::new();
-        for name in self.names.iter().filter(|(_, named)| named.guessed).map(|(name, _)| name) {
-            unknown.insert(printable(name));
-            if unknown.len() > NAMES {
-                unknown.pop_last();
+    /// The alphabetically first names that no library defines.
+    pub(super) fn undefined(&self) -> BTreeSet<String> {
+        let mut undefined = BTreeSet::new();
+        for name in self.names.iter().filter(|(_, named)| named.undefined).map(|(name, _)| name) {
+            undefined.insert(printable(name));
+            if undefined.len() > NAMES {
+                undefined.pop_last();
             }
         }
-        unknown
+        undefined
     }
 
-    /// A warning if the user's lamp is not there. Of several files in a folder, which may be one scene, another may have it.
+    /// A warning if the material of the option `lamp` does not exist. There is none if the folder has several OBJ
+    /// files, because they may be one scene, of which another file has the material.
     pub(super) fn no_lamp(&self) -> Option<String> {
         let lamp = self.options.lamp.as_ref().filter(|lamp| !self.names.contains_key(lamp.as_bytes()))?;
         let folder = self.path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -184,14 +186,14 @@ impl Reader<'_> {
     }
 }
 
-/// A name in the file as one of a file, whatever its encoding.
+/// Converts a name in the file to a path; any encoding is possible.
 #[cfg(unix)]
 fn file_name(name: &[u8]) -> &Path {
     use std::os::unix::ffi::OsStrExt;
     Path::new(std::ffi::OsStr::from_bytes(name))
 }
 
-/// A name in the file as one of a file; empty, and so no file's, if it is not UTF-8.
+/// Converts a name in the file to a path; the path is empty if the name is not UTF-8.
 #[cfg(not(unix))]
 fn file_name(name: &[u8]) -> &Path {
     Path::new(std::str::from_utf8(name).unwrap_or_default())

@@ -1,4 +1,4 @@
-//! Lines and words of OBJ and MTL.
+//! Splits OBJ and MTL files into lines and words.
 
 use super::Fault;
 use crate::scene::placement::MAX_COORDINATE;
@@ -6,10 +6,10 @@ use crate::scene::text::number;
 use glam::{DVec3, Vec3};
 use std::borrow::Cow;
 
-/// The largest coordinates.
-const MOST: DVec3 = DVec3::splat(MAX_COORDINATE);
+/// The largest valid position.
+const LARGEST: DVec3 = DVec3::splat(MAX_COORDINATE);
 
-/// A text, line by line and word by word. A backslash before the end of a line continues it.
+/// Reads a text line by line and word by word. A backslash before the end of a line continues the line.
 #[derive(Clone)]
 pub struct Lines<'a> {
     bytes: &'a [u8],
@@ -18,7 +18,7 @@ pub struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    /// The text from its first line.
+    /// A reader at the start of the text.
     pub fn new(bytes: &'a [u8]) -> Lines<'a> {
         Lines { bytes, at: 0, line: 1 }
     }
@@ -28,7 +28,7 @@ impl<'a> Lines<'a> {
         self.line
     }
 
-    /// The first word of the next line that has one and is no comment.
+    /// Reads the first word of the next line that is neither empty nor a comment.
     pub fn keyword(&mut self) -> Option<&'a [u8]> {
         loop {
             self.skip_blanks();
@@ -39,7 +39,7 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// The next word of this line.
+    /// Reads the next word of this line.
     #[inline]
     pub fn word(&mut self) -> Option<&'a [u8]> {
         self.skip_blanks();
@@ -54,8 +54,8 @@ impl<'a> Lines<'a> {
         Some(word)
     }
 
-    /// The rest of the line, and of those that continue it, without blanks around it. What may be a comment stays: names of
-    /// materials have `#` in them as well, see [`without_comment`].
+    /// Reads the rest of the line and its continuation lines, trimmed. It keeps comments, because names of materials
+    /// may contain `#`; see [`without_comment`].
     pub fn rest(&mut self) -> Cow<'a, [u8]> {
         let (piece, continued) = self.piece();
         if !continued {
@@ -73,7 +73,7 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// The rest of this line alone, without the backslash that continues it, and whether there is one.
+    /// Reads the rest of this line without its continuation lines and without the backslash, and whether there is one.
     fn piece(&mut self) -> (&'a [u8], bool) {
         let rest = &self.bytes[self.at..];
         let end = rest.iter().position(|&b| b == b'\n' || b == b'\r').unwrap_or(rest.len());
@@ -84,8 +84,8 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// Goes behind the end of the line and of those that continue it. A backslash that ends a comment continues nothing: it
-    /// may be the end of a folder's name.
+    /// Skips the rest of the line and its continuation lines. A backslash at the end of a comment does not continue the
+    /// line, because it may be the end of a folder's name.
     #[inline]
     pub fn end_statement(&mut self) {
         loop {
@@ -97,7 +97,7 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// Goes behind the end of the line. Lines end in LF, CRLF or CR.
+    /// Skips the rest of the line. Lines end with LF, CRLF or CR.
     #[inline]
     pub fn skip_line(&mut self) {
         let rest = &self.bytes[self.at..];
@@ -109,7 +109,7 @@ impl<'a> Lines<'a> {
         self.line += 1;
     }
 
-    /// Blanks, and ends of lines that a backslash takes away.
+    /// Skips blanks, and line ends after a backslash.
     #[inline]
     fn skip_blanks(&mut self) {
         while let Some(&b) = self.bytes.get(self.at) {
@@ -125,101 +125,105 @@ impl<'a> Lines<'a> {
     }
 
     #[inline]
-    fn float(&mut self, what: &str) -> Result<f32, Fault> {
+    fn float(&mut self, context: &str) -> Result<f32, Fault> {
         self.skip_blanks();
         if let Some((value, length)) = self.bytes.get(self.at..).and_then(number::float) {
             self.at += length;
             return Ok(value);
         }
-        self.other_float(what)
+        self.other_float(context)
     }
 
     #[inline]
-    fn double(&mut self, what: &str) -> Result<f64, Fault> {
+    fn double(&mut self, context: &str) -> Result<f64, Fault> {
         self.skip_blanks();
         if let Some((value, length)) = self.bytes.get(self.at..).and_then(number::double) {
             self.at += length;
             return Ok(value);
         }
         let word = self.word();
-        word.and_then(number::double).map(|(value, _)| value).ok_or_else(|| self.no_number(word, what))
+        word.and_then(number::double).map(|(value, _)| value).ok_or_else(|| self.no_number(word, context))
     }
 
-    /// A number that a backslash follows, or none.
+    /// Reads a number that is followed by a backslash; other words are errors.
     #[cold]
-    fn other_float(&mut self, what: &str) -> Result<f32, Fault> {
+    fn other_float(&mut self, context: &str) -> Result<f32, Fault> {
         let word = self.word();
-        word.and_then(number::float).map(|(value, _)| value).ok_or_else(|| self.no_number(word, what))
+        word.and_then(number::float).map(|(value, _)| value).ok_or_else(|| self.no_number(word, context))
     }
 
     #[cold]
-    fn no_number(&self, word: Option<&[u8]>, what: &str) -> Fault {
+    fn no_number(&self, word: Option<&[u8]>, context: &str) -> Fault {
         let problem = match word {
-            Some(word) => format!("{what}: `{}` is not a number", printable(word)),
-            None => format!("{what} has too few numbers"),
+            Some(word) => format!("{context}: `{}` is not a number", printable(word)),
+            None => format!("{context} has too few numbers"),
         };
         Fault::new(self.line, problem, "three numbers are needed")
     }
 
     #[inline]
-    fn three(&mut self, what: &str) -> Result<Vec3, Fault> {
-        Ok(Vec3::new(self.float(what)?, self.float(what)?, self.float(what)?))
+    fn three(&mut self, context: &str) -> Result<Vec3, Fault> {
+        Ok(Vec3::new(self.float(context)?, self.float(context)?, self.float(context)?))
     }
 
-    /// A vertex, counted from a point: in double precision if that is not the origin.
+    /// Reads a position and subtracts `offset`, in double precision unless it is zero.
     #[inline]
     pub fn position(&mut self, offset: DVec3) -> Result<Vec3, Fault> {
-        const WHAT: &str = "a vertex";
+        const CONTEXT: &str = "a vertex";
         if offset == DVec3::ZERO {
-            let v = self.three(WHAT)?;
-            return if v.abs().cmple(MOST.as_vec3()).all() { Ok(v) } else { Err(self.too_far(v)) };
+            let v = self.three(CONTEXT)?;
+            return if v.abs().cmple(LARGEST.as_vec3()).all() { Ok(v) } else { Err(self.too_far(v)) };
         }
-        let v = DVec3::new(self.double(WHAT)?, self.double(WHAT)?, self.double(WHAT)?);
-        if v.abs().cmple(MOST).all() { Ok((v - offset).as_vec3()) } else { Err(self.too_far(v.as_vec3())) }
+        let v = DVec3::new(self.double(CONTEXT)?, self.double(CONTEXT)?, self.double(CONTEXT)?);
+        if v.abs().cmple(LARGEST).all() { Ok((v - offset).as_vec3()) } else { Err(self.too_far(v.as_vec3())) }
     }
 
     #[cold]
     fn too_far(&self, v: Vec3) -> Fault {
-        let (what, hint) = match v.is_finite() {
-            true => ("lie beyond 1e18", "scale the mesh down, or remove the vertex"),
+        let (fault, hint) = match v.is_finite() {
+            true => ("exceed the largest coordinate 1e18", "scale the mesh down, or remove the vertex"),
             false => ("are not finite", "remove it or repair the export"),
         };
-        let problem = format!("a vertex has the values ({}, {}, {}), which {what}", v.x, v.y, v.z);
+        let problem = format!("a vertex has the values ({}, {}, {}), which {fault}", v.x, v.y, v.z);
         Fault::new(self.line, problem, hint)
     }
 
-    /// Three numbers; what is not finite is zero and computed later.
+    /// Reads a normal; a normal that is not finite is replaced by zero, and computed later.
     #[inline]
     pub fn normal(&mut self) -> Result<Vec3, Fault> {
         self.three("a normal").map(|v| if v.is_finite() { v } else { Vec3::ZERO })
     }
 
-    /// One finite number.
-    pub fn number(&mut self, what: &str) -> Result<f32, Fault> {
+    /// Reads a finite number; `context` is its name for messages.
+    pub fn number(&mut self, context: &str) -> Result<f32, Fault> {
         let line = self.line;
-        let value = self.float(what)?;
-        if value.is_finite() { Ok(value) } else { Err(Fault::new(line, format!("{what} is not finite"), "repair it")) }
+        let value = self.float(context)?;
+        if value.is_finite() {
+            Ok(value)
+        } else {
+            Err(Fault::new(line, format!("{context} is not finite"), "repair it"))
+        }
     }
 
-    /// A colour: one number is a grey, three are red, green and blue; negative ones are zero.
-    pub fn colour(&mut self, what: &str) -> Result<Vec3, Fault> {
-        let red = self.number(what)?;
+    /// Reads a colour: one number for a grey, or three for red, green and blue. Negative numbers are clamped to zero.
+    pub fn colour(&mut self, context: &str) -> Result<Vec3, Fault> {
+        let red = self.number(context)?;
         let mut colour = Vec3::splat(red);
         if let Some(word) = self.word() {
             self.at -= word.len();
-            colour = Vec3::new(red, self.number(what)?, self.number(what)?);
+            colour = Vec3::new(red, self.number(context)?, self.number(context)?);
         }
         Ok(colour.max(Vec3::ZERO))
     }
 }
 
-/// A name without the comment behind it.
+/// A name without the comment after it.
 pub fn without_comment(name: &[u8]) -> &[u8] {
     let begins = |&at: &usize| name[at] == b'#' && (at == 0 || name[at - 1].is_ascii_whitespace());
     (0..name.len()).find(begins).map_or(name, |at| name[..at].trim_ascii_end())
 }
 
-/// A piece of the file inside a message: readable, short.
+/// Formats a piece of the file for a message: without control characters, and truncated to 80 characters.
 pub fn printable(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(&bytes[..bytes.len().min(200)]);
     text.chars().filter(|c| !c.is_control()).take(80).collect()

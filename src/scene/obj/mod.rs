@@ -1,19 +1,19 @@
-//! Wavefront OBJ with MTL: polygonal meshes, materials, smoothing groups.
+//! Reader of Wavefront OBJ with MTL: polygonal meshes, materials, smoothing groups.
 //!
-//! Why a reader of our own: tobj 4.0.5, the well-kept crate, was measured at 24 to 52 MB/s on one core, below the bar of 60;
-//! its errors name no line; it knows neither smoothing groups nor Latin-1 nor continued lines; a corner without a normal
-//! takes its predecessor's; and a relative texture index beyond the start overflows. A test holds our triangles against
-//! its.
+//! The crate tobj 4.0.5 is not used for these reasons: it was measured at 24 to 52 MB/s on one core, below the required
+//! 60; its errors have no line numbers; it supports neither smoothing groups nor Latin-1 nor continued lines; a corner
+//! without a normal gets its predecessor's; and a relative texture index beyond the start overflows. A test compares
+//! the triangles of both readers.
 //!
-//! What is taken: `v`, `vn`, `f`, `s`, `usemtl`, `mtllib`; `vt`, `g` and `o` are passed over. Triangles stand in file
-//! order, polygons as [`super::polygon`] says. A vertex is a position with a normal: corners with different normals become different vertices.
-//! Where the file has no normals, they are smooth inside a smoothing group, flat after `s off`, and smooth everywhere if
-//! the file never says `s`.
+//! The reader supports `v`, `vn`, `f`, `s`, `usemtl` and `mtllib`; it ignores `vt`, `g` and `o`. Triangles are in file
+//! order; [`super::polygon`] triangulates polygons. Corners with different normals become different vertices. If the
+//! file has no normals, they are smooth inside a smoothing group, flat after `s off`, and smooth everywhere without
+//! `s`.
 //!
-//! A `#` in the name of a material or library begins a comment if there is none of the whole name. A material that is used
-//! before its library is named is filled in then.
+//! A `#` in the name of a material or library begins a comment, unless the whole name exists. A material can be used
+//! before the statement that names its library.
 //!
-//! Materials: see [`mtl`]. Surfaces that shine become point lights: see [`super::lamps`].
+//! [`mtl`] converts materials. Emissive surfaces become point lights, see [`super::lamps`].
 
 mod face;
 mod library;
@@ -21,7 +21,7 @@ mod lines;
 pub mod mtl;
 
 use super::mesh_builder::Warnings;
-use super::text::Home;
+use super::text::SceneFolders;
 use super::{Material, Options, Placement, Scene, lamps, normals};
 use crate::error::{Error, Result};
 use crate::math::Vertex;
@@ -31,10 +31,10 @@ use lines::{Lines, printable};
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-/// Names of each kind that warnings are to choose from.
+/// The largest number of names of each kind that are collected for warnings.
 const NAMES: usize = 16;
 
-/// What is wrong at a line.
+/// An error in a line, without the file's name.
 #[derive(Debug)]
 pub(crate) struct Fault {
     line: usize,
@@ -55,17 +55,17 @@ impl Fault {
 /// Reads the file and the material libraries that it names.
 ///
 /// # Errors
-/// [`Error::Input`] for whatever is wrong with one of them; a library that is not there is a warning.
+/// [`Error::Input`] if one of them is not valid. A library that does not exist is a warning.
 pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     read_bytes(path, &super::read_text(path)?, options)
 }
 
-/// Reads a file that is already in memory; `path` is where libraries are looked for.
+/// Reads a file from memory; libraries are searched in the folder of `path`.
 ///
 /// # Errors
 /// As [`read`].
 pub fn read_bytes(path: &Path, bytes: &[u8], options: &Options) -> Result<Scene> {
-    let mut reader = Reader::new(path, options);
+    let mut reader = ObjReader::new(path, options);
     reader.faces.read(bytes.len());
     let mut lines = Lines::new(bytes);
     while let Some(keyword) = lines.keyword() {
@@ -79,42 +79,41 @@ pub fn read_bytes(path: &Path, bytes: &[u8], options: &Options) -> Result<Scene>
     Ok(reader.finish())
 }
 
-/// A material that has a name.
-struct Named {
+/// The material of a name.
+struct NamedMaterial {
     index: u32,
-    /// True if it is neutral because no library has had it yet.
-    guessed: bool,
+    /// True if no library has defined the name; the material is then neutral.
+    undefined: bool,
 }
 
-struct Reader<'a> {
+struct ObjReader<'a> {
     path: &'a Path,
     options: &'a Options,
-    /// Where positions are counted from.
     placement: Placement,
     faces: Faces,
     materials: Vec<Material>,
-    /// Colour that a material gives off, by its index.
+    /// Emission of each material.
     emission: Vec<Vec3>,
-    /// Triangles of each.
+    /// Number of triangles of each material.
     triangles: Vec<usize>,
-    names: HashMap<Vec<u8>, Named>,
-    /// Names that no library has had yet, and that may end with a comment.
+    names: HashMap<Vec<u8>, NamedMaterial>,
+    /// Undefined names that may contain a comment.
     commented: Vec<Vec<u8>>,
-    /// Libraries that have been read.
+    /// Canonical paths of the libraries that have been read.
     libraries: HashSet<PathBuf>,
-    /// What stood behind `mtllib`, and the names in it.
+    /// Names of libraries that have been searched, including whole lines after `mtllib`.
     tried: HashSet<Vec<u8>>,
-    /// Where libraries may lie, once there is one.
-    home: Option<Home>,
-    /// Keywords that were passed over.
+    /// The folders that libraries must lie in; computed when the first library is named.
+    folders: Option<SceneFolders>,
+    /// Unsupported keywords.
     ignored: BTreeSet<String>,
     warnings: Warnings,
     textures: bool,
 }
 
-impl<'a> Reader<'a> {
-    fn new(path: &'a Path, options: &'a Options) -> Reader<'a> {
-        Reader {
+impl<'a> ObjReader<'a> {
+    fn new(path: &'a Path, options: &'a Options) -> ObjReader<'a> {
+        ObjReader {
             path,
             options,
             placement: Placement { offset: options.offset.unwrap_or(DVec3::ZERO), exponent: 0 },
@@ -126,7 +125,7 @@ impl<'a> Reader<'a> {
             commented: Vec::new(),
             libraries: HashSet::new(),
             tried: HashSet::new(),
-            home: None,
+            folders: None,
             ignored: BTreeSet::new(),
             warnings: Warnings::default(),
             textures: false,
@@ -143,14 +142,14 @@ impl<'a> Reader<'a> {
                 let more = self.faces.triangles.len() - before;
                 self.triangles[material as usize] += more;
                 if self.emission[material as usize] != Vec3::ZERO {
-                    self.faces.shining += more;
+                    self.faces.emissive += more;
                 }
                 read
             }
             b"vt" | b"vp" | b"g" | b"o" => Ok(()),
             b"s" => {
                 let word = lines.word().unwrap_or_default();
-                self.faces.smoothing(if word == b"off" { Smoothing::Flat } else { Smoothing::group(word) });
+                self.faces.set_smoothing(if word == b"off" { Smoothing::Flat } else { Smoothing::group(word) });
                 Ok(())
             }
             b"usemtl" => {
@@ -180,7 +179,7 @@ impl<'a> Reader<'a> {
     }
 
     fn finish(self) -> Scene {
-        let (unknown, no_lamp) = (self.unknown(), self.no_lamp());
+        let (undefined, no_lamp) = (self.undefined(), self.no_lamp());
         let Faces { positions, normals: given, keys, triangles, .. } = &self.faces;
         let mut bad = 0;
         let mut vertices: Vec<Vertex> = keys
@@ -203,17 +202,17 @@ impl<'a> Reader<'a> {
         if bad > 0 {
             warn(format!("{bad} normals in the file are zero or not finite: computed instead"));
         }
-        if !unknown.is_empty() {
-            warn(format!("materials that no library has are neutral grey: {}", list(&unknown)));
+        if !undefined.is_empty() {
+            warn(format!("materials that no library defines are neutral grey: {}", list(&undefined)));
         }
         if self.faces.small > 0 {
-            warn(format!("{} faces with fewer than three corners skipped", self.faces.small));
+            warn(format!("{} faces with fewer than three corners ignored", self.faces.small));
         }
         if self.textures {
-            warn("textures are left out: surfaces have their plain colours".into());
+            warn("textures ignored: surfaces have their base colours".into());
         }
         if !self.ignored.is_empty() {
-            warn(format!("passed over: {}", list(&self.ignored)));
+            warn(format!("unsupported statements ignored: {}", list(&self.ignored)));
         }
         scene
     }

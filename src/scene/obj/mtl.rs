@@ -1,31 +1,31 @@
-//! MTL: material libraries of OBJ, mapped to our Phong material.
+//! Reader of MTL, the material libraries of OBJ; converts materials to Phong materials.
 //!
-//! | MTL | ours |
+//! | MTL | Phong |
 //! |---|---|
-//! | `Kd` | diffuse colour; 0.8 where it is missing |
+//! | `Kd` | diffuse colour; 0.8 if it is missing |
 //! | `Ka` | ambient is a tenth of the smaller of `Ka` and `Kd`: most exporters write `Ka` either as `Kd` or as white |
-//! | `Ks`, `Ns` | highlight, unless `illum` is 0 or 1; the exponent is 10 where it is missing |
+//! | `Ks`, `Ns` | highlight, unless `illum` is 0 or 1; the exponent is 10 if it is missing |
 //! | `illum` 3 to 9 | mirror: the reflectivity is the largest component of `Ks` |
-//! | `illum` 0 | constant colour: all of `Kd` is ambient, nothing diffuse |
-//! | `Ke` | the surface shines: it is as bright by itself, and [`crate::scene::lamps`] makes lights of it |
+//! | `illum` 0 | constant colour: the ambient colour is `Kd`, the diffuse colour is zero |
+//! | `Ke` | emission: the ambient colour is at least `Ke`, and [`crate::scene::lamps`] converts the surface to lights |
 //!
-//! Colours are taken as linear. Transparency, textures and everything else is left out.
+//! Colours are interpreted as linear. Transparency, textures and all other properties are ignored.
 
 use super::Fault;
 use super::lines::Lines;
 use crate::scene::Material;
 use glam::Vec3;
 
-/// What a library says.
+/// The content of a library.
 #[derive(Debug, Default)]
 pub(super) struct Library {
-    /// Name, material, and the colour that it gives off.
+    /// Name, material, and emission.
     pub materials: Vec<(Vec<u8>, Material, Vec3)>,
     /// True if there are textures.
     pub textures: bool,
 }
 
-/// A material as it stands in the file.
+/// The properties of a material in the file.
 #[derive(Default)]
 struct Values {
     diffuse: Option<Vec3>,
@@ -54,7 +54,7 @@ impl Values {
     }
 }
 
-/// Reads a library.
+/// Parses a library.
 pub(super) fn parse(bytes: &[u8]) -> Result<Library, Fault> {
     let mut library = Library::default();
     let mut current: Option<(Vec<u8>, Values)> = None;
@@ -85,11 +85,11 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Library, Fault> {
     Ok(library)
 }
 
-/// A colour; `None` for one that stands in another file or in CIE XYZ, which nobody writes.
-fn colour(lines: &mut Lines, what: &str) -> Result<Option<Vec3>, Fault> {
+/// Reads a colour; `None` for a spectrum in another file or a CIE XYZ colour, which are ignored.
+fn colour(lines: &mut Lines, context: &str) -> Result<Option<Vec3>, Fault> {
     let mut ahead = lines.clone();
     match ahead.word() {
         Some(b"spectral" | b"xyz") => Ok(None),
-        _ => lines.colour(what).map(Some),
+        _ => lines.colour(context).map(Some),
     }
 }

@@ -1,11 +1,11 @@
-//! The header of a PLY file: format, elements, properties.
+//! Parses the header of a PLY file: format, elements, properties.
 //!
-//! Line ends may be LF, CRLF or CR alone (old Macintosh); the first line decides, because in a binary file the byte
-//! after the header's last line end already belongs to the body.
+//! Line ends can be LF, CRLF, or CR (old Macintosh). The first line decides which, because in a binary file the byte
+//! after the header's last line end belongs to the body.
 
 use crate::scene::text::{Fault, quote};
 
-/// A number's type, as the header names it.
+/// The type of a number in the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scalar {
     I8,
@@ -19,7 +19,7 @@ pub enum Scalar {
 }
 
 impl Scalar {
-    /// Bytes in a binary file.
+    /// Size in a binary file in bytes.
     pub fn size(self) -> usize {
         match self {
             Scalar::I8 | Scalar::U8 => 1,
@@ -29,12 +29,11 @@ impl Scalar {
         }
     }
 
-    /// True for types that can count or index.
     pub fn is_integer(self) -> bool {
         !matches!(self, Scalar::F32 | Scalar::F64)
     }
 
-    /// The original names and the later ones with a width in them.
+    /// The type of a name, which is an original one or a later one with a width.
     fn from_name(name: &str) -> Option<Scalar> {
         Some(match name {
             "char" | "int8" => Scalar::I8,
@@ -50,28 +49,25 @@ impl Scalar {
     }
 }
 
-/// What a property holds.
+/// The type of a property.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// One number.
+pub enum PropertyType {
     Scalar(Scalar),
-    /// A count and as many items.
+    /// A list: a number of type `count`, and that many items of type `item`.
     List {
-        /// Type of the count.
         count: Scalar,
-        /// Type of an item.
         item: Scalar,
     },
 }
 
-/// One property of an element.
+/// A property of an element.
 #[derive(Clone, Debug)]
 pub struct Property {
     pub name: String,
-    pub kind: Kind,
+    pub kind: PropertyType,
 }
 
-/// One element: `count` rows of the same properties.
+/// An element: `count` rows with the same properties.
 #[derive(Clone, Debug)]
 pub struct Element {
     pub name: String,
@@ -82,13 +78,13 @@ pub struct Element {
 }
 
 impl Element {
-    /// Index of the property of that name.
+    /// The index of the property of that name.
     pub fn find(&self, name: &str) -> Option<usize> {
         self.properties.iter().position(|p| p.name == name)
     }
 }
 
-/// How numbers are written in the body.
+/// The encoding of numbers in the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
     Ascii,
@@ -96,7 +92,7 @@ pub enum Encoding {
     BigEndian,
 }
 
-/// A parsed header.
+/// The content of the header, and the position of the body.
 #[derive(Clone, Debug)]
 pub struct Header {
     pub encoding: Encoding,
@@ -116,18 +112,19 @@ impl Header {
     }
 }
 
-/// Most elements, and most properties of one: each is compared with all before it.
-const MOST: usize = 1000;
+/// The largest number of elements, and of properties of an element. Each is compared with all before it.
+const MAX_DECLARATIONS: usize = 1000;
 
 #[cold]
-fn too_many(line: usize, what: &str) -> Fault {
-    Fault::new(Some(line), format!("more than {MOST} {what}"), "remove those that make no triangles")
+fn too_many(line: usize, declarations: &str) -> Fault {
+    let problem = format!("there are more than {MAX_DECLARATIONS} {declarations}");
+    Fault::new(Some(line), problem, "remove those that are not needed for triangles")
 }
 
-/// Reads the header.
+/// Parses the header.
 pub fn parse(bytes: &[u8]) -> Result<Header, Fault> {
     if bytes.is_empty() {
-        return Err(Fault::new(None, "the file is empty", "is it a download that failed?"));
+        return Err(Fault::new(None, "the file is empty", "if it was downloaded, download it again"));
     }
     let first_end = bytes.iter().take(64).position(|&b| b == b'\n' || b == b'\r');
     let Some(first_end) = first_end.filter(|&end| bytes[..end].trim_ascii() == b"ply") else {
@@ -150,7 +147,11 @@ pub fn parse(bytes: &[u8]) -> Result<Header, Fault> {
             ["format", name, version] => encoding = Some(parse_format(name, version, line)?),
             ["element", name, count] => {
                 if elements.iter().any(|e| e.name == name) {
-                    return Err(Fault::new(Some(line), format!("a second element {}", quote(name)), "merge them"));
+                    return Err(Fault::new(
+                        Some(line),
+                        format!("the element {} is declared twice", quote(name)),
+                        "merge them",
+                    ));
                 }
                 let count = count.parse().map_err(|_| {
                     Fault::new(
@@ -159,7 +160,7 @@ pub fn parse(bytes: &[u8]) -> Result<Header, Fault> {
                         "write a whole number of 0 or more",
                     )
                 })?;
-                if elements.len() == MOST {
+                if elements.len() == MAX_DECLARATIONS {
                     return Err(too_many(line, "elements"));
                 }
                 elements.push(Element { name: name.to_owned(), count, properties: Vec::new(), line });
@@ -167,23 +168,31 @@ pub fn parse(bytes: &[u8]) -> Result<Header, Fault> {
             ["property", ..] => {
                 let property = parse_property(&words, line)?;
                 let Some(element) = elements.last_mut() else {
-                    return Err(Fault::new(Some(line), "a property before the first element", "put it below one"));
+                    return Err(Fault::new(
+                        Some(line),
+                        "there is a property before the first element",
+                        "put it below an element",
+                    ));
                 };
                 if element.find(&property.name).is_some() {
                     return Err(Fault::new(
                         Some(line),
-                        format!("a second property {} of element {}", quote(&property.name), quote(&element.name)),
+                        format!(
+                            "the property {} of element {} is declared twice",
+                            quote(&property.name),
+                            quote(&element.name)
+                        ),
                         "rename or remove one of them",
                     ));
                 }
-                if element.properties.len() == MOST {
+                if element.properties.len() == MAX_DECLARATIONS {
                     return Err(too_many(line, "properties of an element"));
                 }
                 element.properties.push(property);
             }
             ["end_header"] => {
                 let Some(encoding) = encoding else {
-                    return Err(Fault::new(Some(line), "the header has no `format` line", FORMAT_MEND));
+                    return Err(Fault::new(Some(line), "the header has no `format` line", FORMAT_HINT));
                 };
                 return Ok(Header { encoding, elements, newline, body: at, body_line: line + 1 });
             }
@@ -199,25 +208,25 @@ pub fn parse(bytes: &[u8]) -> Result<Header, Fault> {
     Err(Fault::new(
         Some(line),
         "the file ends within its header: there is no `end_header`",
-        "the file is truncated: fetch it again",
+        "the file is truncated: download it again",
     ))
 }
 
-const FORMAT_MEND: &str = "it must be `format ascii 1.0`, `binary_little_endian 1.0` or `binary_big_endian 1.0`";
+const FORMAT_HINT: &str = "it must be `format ascii 1.0`, `binary_little_endian 1.0` or `binary_big_endian 1.0`";
 
 fn parse_format(name: &str, version: &str, line: usize) -> Result<Encoding, Fault> {
     if version != "1.0" {
-        return Err(Fault::new(Some(line), format!("PLY version {} is unknown", quote(version)), FORMAT_MEND));
+        return Err(Fault::new(Some(line), format!("PLY version {} is unknown", quote(version)), FORMAT_HINT));
     }
     match name {
         "ascii" => Ok(Encoding::Ascii),
         "binary_little_endian" => Ok(Encoding::LittleEndian),
         "binary_big_endian" => Ok(Encoding::BigEndian),
-        _ => Err(Fault::new(Some(line), format!("PLY format {} is unknown", quote(name)), FORMAT_MEND)),
+        _ => Err(Fault::new(Some(line), format!("PLY format {} is unknown", quote(name)), FORMAT_HINT)),
     }
 }
 
-/// `property TYPE NAME` or `property list COUNT-TYPE ITEM-TYPE NAME`.
+/// Parses `property TYPE NAME` or `property list COUNT-TYPE ITEM-TYPE NAME`.
 fn parse_property(words: &[&str], line: usize) -> Result<Property, Fault> {
     let scalar = |name: &str| {
         Scalar::from_name(name).ok_or_else(|| {
@@ -234,18 +243,18 @@ fn parse_property(words: &[&str], line: usize) -> Result<Property, Fault> {
             if !count.is_integer() {
                 return Err(Fault::new(
                     Some(line),
-                    format!("the count of list {} is not of an integer type", quote(name)),
+                    format!("the type of the count of list {} is not an integer type", quote(name)),
                     "use uchar or int",
                 ));
             }
-            Ok(Property { name: name.to_owned(), kind: Kind::List { count, item } })
+            Ok(Property { name: name.to_owned(), kind: PropertyType::List { count, item } })
         }
         ["property", kind, name] if kind != "list" => {
-            Ok(Property { name: name.to_owned(), kind: Kind::Scalar(scalar(kind)?) })
+            Ok(Property { name: name.to_owned(), kind: PropertyType::Scalar(scalar(kind)?) })
         }
         _ => Err(Fault::new(
             Some(line),
-            "not a property",
+            "this is not the declaration of a property",
             "write `property TYPE NAME` or `property list TYPE TYPE NAME`",
         )),
     }

@@ -1,40 +1,40 @@
-//! Stanford PLY (Turk 1994): ASCII and binary of both byte orders, any properties in any order.
+//! Reader of Stanford PLY (Turk 1994): ASCII and binary in both byte orders, any properties in any order.
 //!
-//! Why a reader of our own: ply-rs-bw 4.0.1, the well-kept crate, was measured on the dragon (34 MB ASCII, 871,414
-//! triangles) at 1.4 to 1.6 s, above the bar of one second on one core, and it allocates from the counts that stand in
-//! the file, so that a broken header can ask for any amount of memory. Here the file is read once, parsed in place, and
-//! every count is held against the bytes that are left before anything is allocated from it.
+//! The crate ply-rs-bw 4.0.1 is not used for these reasons: for the dragon (34 MB ASCII, 871,414 triangles) it was
+//! measured at 1.4 to 1.6 s, above the required second on one core; and it allocates memory by the counts in the file,
+//! so that a broken header can request any amount. This reader parses the file in place, in one pass, and compares
+//! every count with the remaining bytes before it allocates memory.
 //!
-//! What is taken: x, y, z of the vertices, nx, ny, nz if all three are there (otherwise smooth normals are computed, see
-//! [`crate::scene::normals`]), and the faces' `vertex_indices` or `vertex_index`, polygons as
-//! [`super::polygon`] says. All other properties and elements are passed over.
+//! The reader supports x, y, z of the vertices; nx, ny, nz if all three exist (otherwise smooth normals are computed,
+//! see [`crate::scene::normals`]); and `vertex_indices` or `vertex_index` of the faces. [`super::polygon`] triangulates
+//! polygons. All other properties and elements are ignored.
 
 mod body;
 mod header;
-mod source;
+mod rows;
 
 use super::text::Fault;
 use super::{Options, Placement, Scene, normals};
 use crate::error::Result;
 use body::Body;
 use glam::DVec3;
-use header::{Element, Encoding, Header, Kind};
-use source::{Ascii, Binary};
+use header::{Element, Encoding, Header, PropertyType};
+use rows::{Ascii, Binary};
 use std::path::Path;
 
 /// Reads the file.
 ///
 /// # Errors
-/// [`crate::Error::Input`] for whatever is wrong with the file.
+/// [`crate::Error::Input`] if the file is not valid.
 pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     let bytes = super::read_text(path)?;
     let body = parse(&bytes, options.offset).map_err(|fault| fault.of(path))?;
-    // The file's bytes are no longer needed: less memory for what follows.
+    // The file's bytes are released before more memory is allocated.
     drop(bytes);
     Ok(finish(body, options.offset))
 }
 
-/// Reads a file that is already in memory; `path` stands in errors only.
+/// Reads a file from memory; `path` is only used for errors.
 ///
 /// # Errors
 /// As [`read`].
@@ -59,11 +59,15 @@ fn parse(bytes: &[u8], offset: Option<DVec3>) -> Result<Body, Fault> {
 
 fn vertex_element(header: &Header) -> Result<&Element, Fault> {
     let Some(vertex) = header.element("vertex") else {
-        return Err(Fault::new(None, "no vertices: the header has no element `vertex`", "is it a mesh?"));
+        return Err(Fault::new(
+            None,
+            "there are no vertices: the header has no element `vertex`",
+            "export it as a mesh",
+        ));
     };
     for name in ["x", "y", "z"] {
         match vertex.find(name).map(|i| vertex.properties[i].kind) {
-            Some(Kind::Scalar(_)) => {}
+            Some(PropertyType::Scalar(_)) => {}
             _ => {
                 return Err(Fault::new(
                     Some(vertex.line),
@@ -82,9 +86,9 @@ fn face_element(header: &Header) -> Result<(&Element, usize), Fault> {
         let hint = if header.element("tristrips").is_some() {
             "it holds triangle strips: convert them to faces, for instance with MeshLab"
         } else {
-            "store it with an `element face` that lists vertex indices"
+            "export it with an `element face` that lists vertex indices"
         };
-        Fault::new(line, "no faces: a point cloud cannot be ray traced", hint)
+        Fault::new(line, "there are no faces: a point cloud cannot be ray traced", hint)
     };
     let face = header.element("face").ok_or_else(|| no_faces(None))?;
     if face.count == 0 {
@@ -99,7 +103,7 @@ fn face_element(header: &Header) -> Result<(&Element, usize), Fault> {
         ));
     };
     match face.properties[list].kind {
-        Kind::List { item, .. } if item.is_integer() => Ok((face, list)),
+        PropertyType::List { item, .. } if item.is_integer() => Ok((face, list)),
         _ => Err(Fault::new(
             Some(face.line),
             "the faces' vertex indices are not a list of integers",
@@ -108,7 +112,7 @@ fn face_element(header: &Header) -> Result<(&Element, usize), Fault> {
     }
 }
 
-/// Normals and warnings.
+/// The scene with normals and warnings.
 fn finish(body: Body, offset: Option<DVec3>) -> Scene {
     let placement = Placement { offset: offset.unwrap_or(DVec3::ZERO), exponent: 0 };
     let mut scene = Scene { vertices: body.vertices, triangles: body.triangles, placement, ..Scene::default() };
@@ -121,10 +125,10 @@ fn finish(body: Body, offset: Option<DVec3>) -> Scene {
         normals::smooth(&mut scene.vertices, &scene.triangles);
     }
     if body.small_polygons > 0 {
-        scene.warnings.push(format!("{} faces with fewer than three corners skipped", body.small_polygons));
+        scene.warnings.push(format!("{} faces with fewer than three corners ignored", body.small_polygons));
     }
     if body.bytes_after > 0 {
-        scene.warnings.push(format!("{} bytes behind the last element ignored", body.bytes_after));
+        scene.warnings.push(format!("{} bytes after the last element ignored", body.bytes_after));
     }
     scene
 }

@@ -1,5 +1,5 @@
-//! `hall`: an enclosed museum hall with two rows of fluted columns under a barrel vault, a polished floor, mirrors on the
-//! walls and polished exhibits (the character of BART's museum). Lamps hang inside; nothing leaves the hall.
+//! `hall`: an enclosed museum hall, similar to BART's museum, with two rows of fluted columns under a barrel vault, a
+//! polished floor, mirrors on the walls and polished exhibits. The lamps hang inside, and no ray leaves the hall.
 
 use super::mesh::{MaterialId, Mesh, fit, segments};
 use super::shapes::{profile, turn};
@@ -15,13 +15,15 @@ pub(super) const INFO: SceneInfo = SceneInfo {
     build,
 };
 
-/// Half the hall's width and length, and the height at which the vault and the aisles' ceilings begin.
+/// Half the width of the hall.
 const WIDTH: f32 = 8.0;
+/// Half the length of the hall.
 const LENGTH: f32 = 18.0;
+/// Height of the lower edge of the vault and of the aisles' ceilings.
 const HEIGHT: f32 = 6.0;
-/// Half the distance of the two rows of columns: the nave, which the vault spans.
+/// Half the distance between the two rows of columns, which is half the width of the nave under the vault.
 const NAVE: f32 = 4.6;
-/// Columns per row, at the same distance.
+/// Number of equally spaced columns per row.
 const COLUMNS: usize = 7;
 
 fn build(values: &Values) -> Scene {
@@ -30,12 +32,12 @@ fn build(values: &Values) -> Scene {
     assemble(mesh, lights, Vec3::ZERO, Some("hall"))
 }
 
-/// The lamps' places.
+/// The positions of the lamps.
 fn lamps() -> [Vec3; 4] {
     [-13.0f32, -4.5, 4.5, 13.0].map(|z| Vec3::new(0.0, 6.6, z))
 }
 
-/// Where column `i` of a row stands.
+/// The z coordinate of column `i` of a row.
 fn column_z(i: usize) -> f32 {
     (i as f32 - (COLUMNS - 1) as f32 * 0.5) * 5.2
 }
@@ -55,7 +57,7 @@ struct Materials {
 }
 
 fn materials(mesh: &mut Mesh) -> Materials {
-    // More ambient light than usual: it stands for what walls and floor throw back.
+    // The ambient light is higher than usual, as a substitute for indirect light from walls and floor.
     let matt = |r, g, b| Material { ambient: Vec3::new(r, g, b) * 0.22, ..Material::matt(Vec3::new(r, g, b)) };
     let mut add = |material| mesh.material(material);
     Materials {
@@ -95,7 +97,7 @@ fn geometry(mesh: &mut Mesh, detail: f32) {
     mesh.place = Affine3A::IDENTITY;
 }
 
-/// Floor, walls, ceilings, vault: all face inwards, so that they are closed seen from within.
+/// Adds floor, walls, ceilings and vault. All of them face inwards and form a closed surface.
 fn shell(mesh: &mut Mesh, m: &Materials, detail: f32) {
     for j in 0..36 {
         for i in 0..16 {
@@ -109,7 +111,7 @@ fn shell(mesh: &mut Mesh, m: &Materials, detail: f32) {
     let across = Vec3::X * (2.0 * WIDTH);
     mesh.quad(m.plaster, Vec3::new(-WIDTH, 0.0, -LENGTH), across, up, [4, 2]);
     mesh.quad(m.plaster, Vec3::new(WIDTH, 0.0, LENGTH), -across, up, [4, 2]);
-    // The aisles' ceilings, from the wall to the beam's middle; the beams carry the vault.
+    // The ceilings of the aisles extend from the wall to the centre of the beams that carry the vault.
     let aisle = Vec3::X * (WIDTH - NAVE);
     mesh.quad(m.vault, Vec3::new(-WIDTH, HEIGHT, -LENGTH), aisle, along, [2, 14]);
     mesh.quad(m.vault, Vec3::new(NAVE, HEIGHT, -LENGTH), aisle, along, [2, 14]);
@@ -120,13 +122,13 @@ fn shell(mesh: &mut Mesh, m: &Materials, detail: f32) {
     let arch = |u: f32| Vec3::new(NAVE * (PI * u).cos(), HEIGHT + NAVE * (PI * u).sin(), 0.0);
     let cells = [segments(32.0, detail, 8), segments(28.0, detail, 7)];
     mesh.surface(m.vault, cells, [false; 2], |u, v| arch(u) + Vec3::Z * (LENGTH * (1.0 - 2.0 * v)));
-    // Ribs over the columns.
+    // Ribs over the columns
     for i in 0..COLUMNS {
         let path: Vec<Vec3> =
             (0..=cells[0]).map(|k| arch(k as f32 / cells[0] as f32) + Vec3::Z * column_z(i)).collect();
         mesh.tube(m.stone, &path, |_| 0.16, segments(10.0, detail, 5));
     }
-    // The ends of the vault.
+    // The ends of the vault
     let rim: Vec<Vec3> = (0..=cells[0]).map(|k| arch(k as f32 / cells[0] as f32)).collect();
     let front: Vec<Vec3> = rim.iter().map(|p| *p - Vec3::Z * LENGTH).collect();
     let back: Vec<Vec3> = rim.iter().rev().map(|p| *p + Vec3::Z * LENGTH).collect();
@@ -134,7 +136,7 @@ fn shell(mesh: &mut Mesh, m: &Materials, detail: f32) {
     mesh.polygon(m.plaster, &back);
 }
 
-/// A column of the Attic kind: plinth, two rings with a hollow, fluted shaft, capital, abacus.
+/// Adds a column with an Attic base: plinth, two tori with a scotia, fluted shaft, capital, abacus.
 fn column(mesh: &mut Mesh, m: &Materials, detail: f32) {
     let around = segments(40.0, detail, 10);
     mesh.cuboid(m.marble, Vec3::new(-0.52, -0.01, -0.52), Vec3::new(0.52, 0.16, 0.52));
@@ -150,7 +152,7 @@ fn column(mesh: &mut Mesh, m: &Materials, detail: f32) {
         (0.38, 0.52),
     ];
     mesh.lathe(m.marble, &profile(&base, segments(20.0, detail, 8)), around);
-    // Twelve flutes; the shaft tapers with a slight swelling.
+    // The shaft has twelve flutes, and tapers with a slight entasis.
     let flutes = 12.0;
     mesh.surface(m.stone, [segments(96.0, detail, 24), segments(8.0, detail, 3)], [false; 2], |u, v| {
         let swelling = 0.37 - 0.05 * v + 0.02 * (PI * v).sin();
@@ -163,7 +165,8 @@ fn column(mesh: &mut Mesh, m: &Materials, detail: f32) {
     mesh.cuboid(m.marble, Vec3::new(-0.54, 5.09, -0.54), Vec3::new(0.54, 5.27, 0.54));
 }
 
-/// Between the columns, on both walls: mirrors and paintings in gilt frames by turns; skirting boards; doors at the ends.
+/// Adds alternating mirrors and paintings in gilt frames on both walls between the columns, skirting boards, and doors
+/// at the ends.
 fn walls(mesh: &mut Mesh, m: &Materials, detail: f32) {
     for side in [-1.0f32, 1.0] {
         for i in 0..COLUMNS - 1 {
@@ -172,7 +175,7 @@ fn walls(mesh: &mut Mesh, m: &Materials, detail: f32) {
                 0 => m.mirror,
                 _ => m.paintings[(i + usize::from(side > 0.0)) % 3],
             };
-            // The frame's local x runs along the wall, its z points into the hall.
+            // In local coordinates x is along the wall, and z points into the hall.
             let facing = glam::Quat::from_rotation_y(-side * PI * 0.5);
             mesh.place = Affine3A::from_rotation_translation(facing, Vec3::new(side * WIDTH, 2.6, z));
             framed(mesh, m, picture, 3.0, 2.8, detail);
@@ -189,7 +192,7 @@ fn walls(mesh: &mut Mesh, m: &Materials, detail: f32) {
     mesh.place = Affine3A::IDENTITY;
 }
 
-/// A picture with a rounded frame, on the wall z = 0.
+/// Adds a picture with a rounded frame, on the wall z = 0.
 fn framed(mesh: &mut Mesh, m: &Materials, picture: MaterialId, width: f32, height: f32, detail: f32) {
     let (w, h) = (width * 0.5, height * 0.5);
     mesh.quad(picture, Vec3::new(-w, -h, 0.05), Vec3::X * width, Vec3::Y * height, [1, 1]);
@@ -201,7 +204,7 @@ fn framed(mesh: &mut Mesh, m: &Materials, picture: MaterialId, width: f32, heigh
     }
 }
 
-/// A double door on the wall z = 0, centred 2 m above the floor.
+/// Adds a double door on the wall z = 0, with its centre 2 m above the floor.
 fn door(mesh: &mut Mesh, m: &Materials, detail: f32) {
     mesh.block(m.dark, Vec3::new(0.0, -0.2, 0.02), Vec3::new(2.8, 3.6, 0.12));
     for x in [-0.68, 0.68] {
@@ -216,7 +219,7 @@ fn door(mesh: &mut Mesh, m: &Materials, detail: f32) {
     mesh.block(m.marble, Vec3::new(0.0, 1.95, 0.10), Vec3::new(3.6, 0.32, 0.32));
 }
 
-/// Exhibits on pedestals along the middle.
+/// Adds exhibits on pedestals along the centre line.
 fn exhibits(mesh: &mut Mesh, m: &Materials, detail: f32) {
     for (i, z) in [-10.4f32, -5.2, 0.0, 5.2, 10.4].into_iter().enumerate() {
         mesh.place = Affine3A::from_translation(Vec3::new(0.0, 0.0, z));
@@ -239,7 +242,7 @@ fn exhibits(mesh: &mut Mesh, m: &Materials, detail: f32) {
     mesh.place = Affine3A::IDENTITY;
 }
 
-/// A trefoil knot of a thick wire.
+/// Adds a trefoil knot of thick wire.
 fn knot(mesh: &mut Mesh, material: MaterialId, detail: f32) {
     let rows = segments(160.0, detail, 36);
     let points: Vec<Vec3> = (0..=rows)
@@ -252,7 +255,7 @@ fn knot(mesh: &mut Mesh, material: MaterialId, detail: f32) {
     mesh.tube(material, &points, |_| 0.10, segments(16.0, detail, 6));
 }
 
-/// A shade on a rod from the vault; the light hangs below it.
+/// Adds a lampshade on a rod from the vault; the light is below it.
 fn lamp(mesh: &mut Mesh, m: &Materials, detail: f32) {
     let around = segments(32.0, detail, 8);
     let top = HEIGHT + NAVE - 6.6;

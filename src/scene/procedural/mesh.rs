@@ -1,36 +1,37 @@
-//! The mesh under construction, and how it comes to have as many triangles as wanted.
+//! The mesh of a built-in scene, and the search for the detail that gives the requested number of triangles.
 //!
-//! A scene describes its geometry as a function of a *detail*, by which it scales all numbers of segments. [`fit`] runs
-//! that function many times on a mesh that only counts, until the detail gives the wanted number, and then once in
-//! earnest.
+//! A scene defines its geometry as a function of a *detail*, a factor on all numbers of segments. [`fit`] evaluates
+//! that function repeatedly on a mesh that only counts triangles, until the detail gives the requested number, and then
+//! builds the mesh.
 
 use crate::math::Vertex;
 use crate::scene::{Material, Triangle};
 use glam::{Affine3A, Vec3};
 
-/// A mesh under construction. Everything is placed by `place`, which rotates, moves and scales evenly.
+/// A mesh under construction.
 pub struct Mesh {
     pub vertices: Vec<Vertex>,
     pub triangles: Vec<Triangle>,
     pub materials: Vec<Material>,
-    /// Where the next shapes go.
+    /// The transform of the following shapes: a rotation, a translation and a uniform scale.
     pub place: Affine3A,
-    /// Number of triangles so far, also where only counted.
+    /// Number of triangles so far, including those that are only counted.
     count: usize,
+    /// True if triangles are counted, not built.
     counting: bool,
 }
 
-/// Index of a material in the mesh.
+/// Index of a material in [`Mesh::materials`].
 pub type MaterialId = u32;
 
-/// Builds the mesh whose number of triangles comes nearest to `target` without passing it (or the coarsest).
+/// Builds the mesh with the largest number of triangles up to `target`, or the coarsest mesh if all have more.
 pub fn fit(target: usize, geometry: impl Fn(&mut Mesh, f32)) -> Mesh {
     let count = |detail: f32| {
         let mut mesh = Mesh::new(true);
         geometry(&mut mesh, detail);
         mesh.count
     };
-    // Detail enters the count squared, and the largest scenes have some thousand times the triangles of the smallest.
+    // The count is about proportional to the square of the detail; the range covers all parameters of all scenes.
     let (mut low, mut high) = (1.0f32 / 1024.0, 1024.0f32);
     for _ in 0..40 {
         let middle = (low * high).sqrt();
@@ -42,7 +43,7 @@ pub fn fit(target: usize, geometry: impl Fn(&mut Mesh, f32)) -> Mesh {
     mesh
 }
 
-/// A number of segments: `base` at detail 1, at least `least`.
+/// A number of segments: `base` at detail 1, but at least `least`.
 pub fn segments(base: f32, detail: f32, least: usize) -> usize {
     ((base * detail).round() as usize).max(least)
 }
@@ -59,25 +60,25 @@ impl Mesh {
         }
     }
 
-    /// A mesh that is not fitted to a number of triangles.
+    /// A mesh that is built directly, without [`fit`].
     pub fn plain() -> Mesh {
         Mesh::new(false)
     }
 
-    /// Adds a material.
+    /// Adds a material and returns its index.
     pub fn material(&mut self, material: Material) -> MaterialId {
         self.materials.push(material);
         self.materials.len() as u32 - 1
     }
 
-    /// Announces `triangles` new ones; true if they are wanted and not only counted.
+    /// Counts `triangles`. Returns true if the caller must add them, false if they are only counted.
     #[must_use]
     pub fn announce(&mut self, triangles: usize) -> bool {
         self.count += triangles;
         !self.counting
     }
 
-    /// Adds a vertex, placed; returns its index.
+    /// Adds a vertex, transformed by [`Mesh::place`], and returns its index.
     pub fn vertex(&mut self, position: Vec3, normal: Vec3) -> u32 {
         let position = self.place.transform_point3(position);
         let normal = self.place.transform_vector3(normal).normalize_or_zero();
@@ -85,14 +86,14 @@ impl Mesh {
         self.vertices.len() as u32 - 1
     }
 
-    /// Adds a triangle, counter-clockwise seen from outside.
+    /// Adds a triangle; its vertices are counter-clockwise, seen from outside.
     pub fn triangle(&mut self, material: MaterialId, vertices: [u32; 3]) {
         self.triangles.push(Triangle { vertices, material });
     }
 
-    /// A smooth surface over `nu` x `nv` cells: `surface(u, v)` gives position and normal for u, v in 0..=1; the outside
-    /// is where the derivative by u crossed with that by v points. `poles` says whether the first and the last row
-    /// (v = 0, v = 1) shrink to a point.
+    /// Adds a smooth surface of `nu` x `nv` cells. `surface(u, v)` gives position and normal for u, v in 0..=1; the
+    /// cross product of the derivatives by u and v points outwards. `poles` tells whether the first and the last row (v
+    /// = 0, v = 1) are a single point.
     pub fn patch(
         &mut self,
         material: MaterialId,

@@ -1,7 +1,8 @@
-//! Built-in scenes: the same triangles on every machine, of any size, for every character that a structure may meet.
+//! Built-in scenes. They cover the distributions of geometry that matter for acceleration structures, have the same
+//! triangles on every machine, and can be scaled to any size.
 //!
-//! A scene is one file with an `INFO` in it and one line in `SCENES`. All have the parameter `triangles`, which they
-//! meet within a few percent. Lengths are metres, y points up.
+//! A scene is a module with an `INFO` and a line in `SCENES`. All have the parameter `triangles`, which they meet
+//! within a few percent. Lengths are in metres, and y points up.
 
 mod hall;
 mod mesh;
@@ -19,18 +20,18 @@ use super::{Light, Scene, did_you_mean};
 use crate::error::{Error, Result};
 use glam::Vec3;
 
-/// A parameter of a built-in scene: a whole number.
+/// An integer parameter of a built-in scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Parameter {
-    /// As written in `name:key=value`.
+    /// The key in `name:key=value`.
     pub name: &'static str,
-    /// One line.
+    /// Description for listings, one line.
     pub meaning: &'static str,
-    /// Value if not given.
+    /// The value if none is given.
     pub default: u64,
-    /// Smallest value.
+    /// The smallest allowed value.
     pub min: u64,
-    /// Largest value.
+    /// The largest allowed value.
     pub max: u64,
 }
 
@@ -41,53 +42,50 @@ impl Parameter {
     }
 }
 
-/// A built-in scene.
+/// Name, description and parameters of a built-in scene.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneInfo {
-    /// As given to [`crate::scene::load`].
+    /// The name that [`crate::scene::load`] accepts.
     pub name: &'static str,
-    /// What is peculiar about it, one line.
+    /// Description of its geometry, one line.
     pub character: &'static str,
-    /// What can be set.
+    /// The parameters that it accepts.
     pub parameters: &'static [Parameter],
     build: fn(&Values) -> Scene,
 }
 
-/// All built-in scenes.
 const SCENES: &[SceneInfo] = &[scan::INFO, terrain::INFO, sphereflake::INFO, stadium::INFO, hall::INFO, room::INFO];
 
-/// All built-in scenes.
+/// Descriptions of all built-in scenes.
 pub fn list() -> Vec<SceneInfo> {
     SCENES.to_vec()
 }
 
-/// The parameters' values, all within their ranges.
+/// Values of all parameters; each is in its range.
 struct Values<'a> {
     parameters: &'a [Parameter],
     values: Vec<u64>,
 }
 
 impl Values<'_> {
-    /// How many triangles are wanted.
+    /// The requested number of triangles.
     fn triangles(&self) -> usize {
         let index = self.parameters.iter().position(|p| p.name == "triangles");
         index.map_or(0, |i| self.values[i] as usize)
     }
 }
 
+/// Refuses a name or a parameter that [`build`] would refuse; builds nothing.
+///
+/// # Errors
+/// [`Error::Input`].
+pub(super) fn check(what: &str) -> Result<()> {
+    parse(what).map(drop)
+}
+
 /// Builds `name[:key=value,...]`.
 pub(super) fn build(what: &str) -> Result<Scene> {
-    let (name, settings) = what.split_once(':').unwrap_or((what, ""));
-    let Some(info) = SCENES.iter().find(|info| info.name == name) else {
-        let known: Vec<&str> = SCENES.iter().map(|info| info.name).collect();
-        let hint = format!("{}; or name a file such as mesh.ply", did_you_mean(name, &known));
-        return Err(Error::argument(what, format!("no file and no built-in scene is called `{name}`"), hint));
-    };
-    let mut values: Vec<u64> = info.parameters.iter().map(|p| p.default).collect();
-    for setting in settings.split(',').filter(|s| !s.is_empty()) {
-        let (index, value) = setting_of(info, what, setting)?;
-        values[index] = value;
-    }
+    let (info, values) = parse(what)?;
     let mut scene = (info.build)(&Values { parameters: info.parameters, values: values.clone() });
     let set: Vec<String> = info
         .parameters
@@ -96,30 +94,46 @@ pub(super) fn build(what: &str) -> Result<Scene> {
         .filter(|(p, value)| **value != p.default)
         .map(|(p, value)| format!("{}={value}", p.name))
         .collect();
-    scene.name = if set.is_empty() { name.to_owned() } else { format!("{name}:{}", set.join(",")) };
+    scene.name = if set.is_empty() { info.name.to_owned() } else { format!("{}:{}", info.name, set.join(",")) };
     Ok(scene)
 }
 
-/// One `key=value`: the parameter's index and the value.
-fn setting_of(info: &SceneInfo, what: &str, setting: &str) -> Result<(usize, u64)> {
+/// The scene and the values of its parameters.
+fn parse(spec: &str) -> Result<(&'static SceneInfo, Vec<u64>)> {
+    let (name, settings) = spec.split_once(':').unwrap_or((spec, ""));
+    let Some(info) = SCENES.iter().find(|info| info.name == name) else {
+        let known: Vec<&str> = SCENES.iter().map(|info| info.name).collect();
+        let hint = format!("{}; or name a file such as mesh.ply", did_you_mean(name, &known));
+        return Err(Error::argument(spec, format!("no file and no built-in scene is called `{name}`"), hint));
+    };
+    let mut values: Vec<u64> = info.parameters.iter().map(|p| p.default).collect();
+    for setting in settings.split(',').filter(|s| !s.is_empty()) {
+        let (index, value) = setting_of(info, spec, setting)?;
+        values[index] = value;
+    }
+    Ok((info, values))
+}
+
+/// Parses `key=value`: the index of the parameter, and its value.
+fn setting_of(info: &SceneInfo, spec: &str, setting: &str) -> Result<(usize, u64)> {
     let Some((key, text)) = setting.split_once('=') else {
-        return Err(Error::argument(what, format!("`{setting}` is not of the form key=value"), example(info)));
+        return Err(Error::argument(spec, format!("`{setting}` is not of the form key=value"), example(info)));
     };
     let Some(index) = info.parameters.iter().position(|p| p.name == key) else {
         let known: Vec<&str> = info.parameters.iter().map(|p| p.name).collect();
         let problem = format!("scene {} has no parameter `{key}`", info.name);
-        return Err(Error::argument(what, problem, did_you_mean(key, &known)));
+        return Err(Error::argument(spec, problem, did_you_mean(key, &known)));
     };
     let Parameter { min, max, .. } = info.parameters[index];
     match text.replace('_', "").parse() {
         Ok(value) if (min..=max).contains(&value) => Ok((index, value)),
         Ok(value) => Err(Error::argument(
-            what,
+            spec,
             format!("{key}={value} is out of range"),
             format!("scene {} takes {min} to {max}", info.name),
         )),
         Err(_) => Err(Error::argument(
-            what,
+            spec,
             format!("{key}: `{text}` is not a whole number"),
             format!("give a number from {min} to {max}"),
         )),
@@ -133,7 +147,7 @@ fn example(info: &SceneInfo) -> String {
     }
 }
 
-/// A scene of a mesh and what stands around it.
+/// A scene with this mesh.
 fn assemble(mesh: mesh::Mesh, lights: Vec<Light>, background: Vec3, camera_path: Option<&str>) -> Scene {
     Scene {
         vertices: mesh.vertices,

@@ -1,8 +1,9 @@
-//! Gradient noise from an integer hash: additions and multiplications only, the same bits on every machine.
+//! Gradient noise from an integer hash. It uses additions and multiplications only, and gives the same bits on every
+//! machine.
 
 use glam::{Vec2, Vec3};
 
-/// Scrambles the bits of a word (the finaliser of MurmurHash3).
+/// Hashes a word (the finaliser of MurmurHash3).
 pub fn scramble(mut x: u32) -> u32 {
     x = (x ^ (x >> 16)).wrapping_mul(0x85EB_CA6B);
     x = (x ^ (x >> 13)).wrapping_mul(0xC2B2_AE35);
@@ -14,12 +15,12 @@ fn salt(seed: u32) -> u32 {
     seed.wrapping_mul(0x9E37_79B9)
 }
 
-/// A number in 0..1 that depends on `index` and `seed` only.
+/// A pseudorandom number in 0..1, a function of `index` and `seed`.
 pub fn random(index: u32, seed: u32) -> f32 {
     (scramble(scramble(index ^ salt(seed))) >> 8) as f32 / (1u32 << 24) as f32
 }
 
-/// Quintic fade (Perlin 2002): first and second derivative vanish at 0 and 1.
+/// The quintic fade curve (Perlin 2002): its first and second derivatives are zero at 0 and 1.
 fn fade(t: f32) -> f32 {
     t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
 }
@@ -28,17 +29,17 @@ fn mix(a: f32, b: f32, t: f32) -> f32 {
     a + (b - a) * t
 }
 
-/// The lattice point below; `as` truncates, which is much cheaper than `floor` without SSE 4.1.
+/// The largest integer not above `x`. It truncates with `as`, which is much faster than `floor` without SSE 4.1.
 fn below(x: f32) -> i32 {
     let truncated = x as i32;
     truncated - i32::from(x < truncated as f32)
 }
 
-/// Gradient noise in space, about -1 to 1.
+/// Gradient noise in three dimensions, about -1 to 1.
 pub fn noise3(p: Vec3, seed: u32) -> f32 {
     let (x, y, z) = (below(p.x), below(p.y), below(p.z));
     let f = p - Vec3::new(x as f32, y as f32, z as f32);
-    // The hash of a corner is built axis by axis, so that corners share the work.
+    // The hash of a corner is computed axis by axis, so that corners share the intermediate hashes.
     let hash_x = [0, 1].map(|d| scramble(x.wrapping_add(d) as u32 ^ salt(seed)));
     let corner = |dx: usize, dy: i32, dz: i32, hash_xy: u32| {
         let h = scramble(hash_xy ^ (z.wrapping_add(dz) as u32).wrapping_mul(0xC2B2_AE3D));
@@ -55,7 +56,7 @@ pub fn noise3(p: Vec3, seed: u32) -> f32 {
     mix(row(0), row(1), v) * 1.2
 }
 
-/// Gradient noise in the plane, about -1 to 1.
+/// Gradient noise in two dimensions, about -1 to 1.
 pub fn noise2(p: Vec2, seed: u32) -> f32 {
     let (x, y) = (below(p.x), below(p.y));
     let f = p - Vec2::new(x as f32, y as f32);
@@ -69,8 +70,8 @@ pub fn noise2(p: Vec2, seed: u32) -> f32 {
     mix(mix(corner(0, 0), corner(1, 0), u), mix(corner(0, 1), corner(1, 1), u), v) * 1.3
 }
 
-/// Ridged noise, 0 to about 1: sharp crests where the noise passes zero, each octave weighted by the one before, so that
-/// valleys stay smooth (Musgrave's ridged multifractal).
+/// Musgrave's ridged multifractal, 0 to about 1: noise with sharp crests at its zeros. Each octave is weighted by the
+/// previous one, so that valleys are smooth.
 pub fn ridged(p: Vec2, octaves: u32, seed: u32) -> f32 {
     let (mut sum, mut amplitude, mut weight, mut scale) = (0.0, 0.5, 1.0f32, 1.0);
     for octave in 0..octaves {
@@ -84,7 +85,7 @@ pub fn ridged(p: Vec2, octaves: u32, seed: u32) -> f32 {
     sum
 }
 
-/// Fractal sum of octaves of a noise, about -1 to 1: `octave` is asked for each with its scale and number.
+/// The fractal sum of octaves of a noise, about -1 to 1. `octave` computes an octave from its scale and number.
 pub fn fractal(octaves: u32, octave: impl Fn(f32, u32) -> f32) -> f32 {
     let (mut sum, mut amplitude, mut scale) = (0.0, 0.5, 1.0);
     for number in 0..octaves {
@@ -100,7 +101,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn noise_is_continuous_bounded_and_fixed() {
+    fn noise_is_continuous_bounded_and_deterministic() {
         let mut largest = 0.0f32;
         for i in 0..20_000u32 {
             let p = Vec3::new(random(i, 1), random(i, 2), random(i, 3)) * 40.0 - 20.0;

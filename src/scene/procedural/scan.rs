@@ -1,5 +1,5 @@
-//! `scan`: one closed surface of evenly sized triangles, as from a 3D scanner (the bunny's and the dragon's character):
-//! a cat that sits on a plinth, meshed by surface nets.
+//! `scan`: one closed surface of triangles of uniform size, similar to the scanned bunny and dragon: a cat on a plinth,
+//! meshed by surface nets.
 
 use super::mesh::Mesh;
 use super::noise::{fractal, noise3};
@@ -12,12 +12,12 @@ use glam::Vec3;
 
 pub(super) const INFO: SceneInfo = SceneInfo {
     name: "scan",
-    character: "uniform: one scanned-like statue of evenly sized triangles, one light",
+    character: "uniform: one statue, similar to a scan, with triangles of uniform size, one light",
     parameters: &[Parameter::triangles(70_000, 1_000)],
     build,
 };
 
-/// The cube that holds the statue.
+/// The lowest corner and the edge length of a cube around the statue.
 const MIN: Vec3 = Vec3::new(-1.15, -0.1, -1.15);
 const SIZE: f32 = 2.3;
 
@@ -25,8 +25,8 @@ fn build(values: &Values) -> Scene {
     let target = values.triangles();
     let statue = Statue::new();
     let net = |cell: f32| surface_net(MIN, SIZE, cell, RELIEF, |p| statue.distance(p));
-    // The number of triangles goes with the inverse square of the cell, and a little faster, since finer cells see more of
-    // the relief: nets of a sixteenth and a quarter of the size tell by how much.
+    // The number of triangles grows slightly faster than the inverse square of the cell size, because smaller cells
+    // resolve more of the relief. Nets with a sixteenth and a quarter of the triangles measure this.
     let cell_for = |cell: f32, found: usize, wanted: usize| cell * (found as f32 / wanted as f32).sqrt();
     let mut cell = SIZE / 24.0;
     for share in [16, 4] {
@@ -52,12 +52,12 @@ fn build(values: &Values) -> Scene {
     assemble(mesh, vec![light], Vec3::new(0.10, 0.11, 0.13), None)
 }
 
-/// Height of fur and grain.
+/// Upper bound of the height of fur and grain.
 const RELIEF: f32 = 0.025;
 
-/// What is computed once.
+/// Precomputed parts of the statue.
 struct Statue {
-    /// Centres of the tail, from its root.
+    /// Points on the centre line of the tail, from its root.
     tail: Vec<Vec3>,
 }
 
@@ -68,11 +68,11 @@ impl Statue {
         Statue { tail: curve(&tail.map(Vec3::from), 8) }
     }
 
-    /// Negative inside; near the surface about the distance.
+    /// The approximate signed distance to the surface, negative inside.
     fn distance(&self, p: Vec3) -> f32 {
         let plinth = rounded_cylinder(p, 0.74, 0.2, 0.03);
         let mut cat = torso(p);
-        // A part counts only where it may come nearer than what is there already, blending included.
+        // A part is evaluated only if it can be nearer than the parts so far, including the radius of blending.
         let may_count = |cat: f32, center: Vec3, radius: f32| p.distance(center) - radius < cat.min(plinth) + 0.1;
         if may_count(cat, Vec3::new(0.0, 0.5, 0.3), 0.62) {
             cat = legs(p, cat);
@@ -87,7 +87,7 @@ impl Statue {
             cat = blend(cat, tail, 0.05);
         }
         let whole = blend(cat, plinth, 0.015);
-        // The relief is seen only near the surface; elsewhere the distance is all that matters.
+        // The relief matters only near the surface.
         if whole.abs() > RELIEF {
             return whole;
         }
@@ -98,12 +98,12 @@ impl Statue {
     }
 }
 
-/// Both sides are alike.
+/// Mirrors a point to the right half, because parts of the cat are symmetric.
 fn mirrored(p: Vec3) -> Vec3 {
     Vec3::new(p.x.abs(), p.y, p.z)
 }
 
-/// From the hips to the neck.
+/// Signed distance to the torso, from the hips to the neck.
 fn torso(p: Vec3) -> f32 {
     let mut cat = cone(p, Vec3::new(0.0, 0.58, -0.20), Vec3::new(0.0, 1.02, 0.10), 0.40, 0.29);
     cat = blend(cat, ellipsoid(mirrored(p), Vec3::new(0.27, 0.45, -0.10), Vec3::new(0.20, 0.28, 0.36)), 0.10);
@@ -111,7 +111,7 @@ fn torso(p: Vec3) -> f32 {
     blend(cat, cone(p, Vec3::new(0.0, 1.10, 0.14), Vec3::new(0.0, 1.42, 0.24), 0.22, 0.19), 0.10)
 }
 
-/// Fore legs and all paws.
+/// Adds fore legs and paws to the distance `cat`.
 fn legs(p: Vec3, mut cat: f32) -> f32 {
     let m = mirrored(p);
     cat = blend(cat, cone(m, Vec3::new(0.15, 0.90, 0.26), Vec3::new(0.13, 0.28, 0.38), 0.12, 0.085), 0.06);
@@ -119,7 +119,7 @@ fn legs(p: Vec3, mut cat: f32) -> f32 {
     blend(cat, ellipsoid(m, Vec3::new(0.34, 0.25, 0.20), Vec3::new(0.11, 0.075, 0.20)), 0.05)
 }
 
-/// Skull, cheeks, chin, nose, ears, eyes.
+/// Adds skull, cheeks, chin, nose, ears and eyes to the distance `cat`.
 fn head(p: Vec3, mut cat: f32) -> f32 {
     let m = mirrored(p);
     cat = blend(cat, ellipsoid(p, Vec3::new(0.0, 1.54, 0.28), Vec3::new(0.27, 0.235, 0.25)), 0.07);
@@ -127,24 +127,24 @@ fn head(p: Vec3, mut cat: f32) -> f32 {
     cat = blend(cat, ellipsoid(p, Vec3::new(0.0, 1.41, 0.47), Vec3::new(0.07, 0.06, 0.07)), 0.03);
     cat = blend(cat, ellipsoid(p, Vec3::new(0.0, 1.515, 0.56), Vec3::new(0.03, 0.022, 0.025)), 0.01);
     cat = blend(cat, cone(m, Vec3::new(0.145, 1.68, 0.25), Vec3::new(0.205, 1.93, 0.23), 0.095, 0.02), 0.04);
-    // The hollow of an ear, and the eyes' sockets with the eyes.
+    // The hollows of the ears, and the eyes in their sockets
     cat = carve(cat, cone(m, Vec3::new(0.155, 1.70, 0.345), Vec3::new(0.205, 1.87, 0.275), 0.055, 0.02), 0.02);
     cat = carve(cat, ellipsoid(m, Vec3::new(0.105, 1.58, 0.51), Vec3::new(0.055, 0.04, 0.05)), 0.02);
     blend(cat, ellipsoid(m, Vec3::new(0.10, 1.58, 0.475), Vec3::new(0.045, 0.038, 0.04)), 0.005)
 }
 
-/// Polynomial smooth union with radius `k`.
+/// The polynomial smooth union of two distances with radius `k`.
 fn blend(a: f32, b: f32, k: f32) -> f32 {
     let h = (k - (a - b).abs()).max(0.0) / k;
     a.min(b) - h * h * k * 0.25
 }
 
-/// `b` taken away from `a`, smoothly.
+/// The smooth difference of `a` and `b` with radius `k`.
 fn carve(a: f32, b: f32, k: f32) -> f32 {
     -blend(-a, b, k)
 }
 
-/// About the distance to an ellipsoid (exact on the surface).
+/// The approximate signed distance to an ellipsoid; it is zero exactly on the surface.
 fn ellipsoid(p: Vec3, center: Vec3, radii: Vec3) -> f32 {
     let q = (p - center) / radii;
     let k0 = q.length();
@@ -152,14 +152,14 @@ fn ellipsoid(p: Vec3, center: Vec3, radii: Vec3) -> f32 {
     if k1 > 0.0 { k0 * (k0 - 1.0) / k1 } else { -radii.min_element() }
 }
 
-/// A capsule whose radius changes from `ra` to `rb`.
+/// The approximate signed distance to a capsule with the radius `ra` at `a` and `rb` at `b`.
 fn cone(p: Vec3, a: Vec3, b: Vec3, ra: f32, rb: f32) -> f32 {
     let ab = b - a;
     let t = ((p - a).dot(ab) / ab.length_squared()).clamp(0.0, 1.0);
     p.distance(a + ab * t) - (ra + (rb - ra) * t)
 }
 
-/// A cylinder around y from 0 to `height`, its edges rounded.
+/// The signed distance to a cylinder around the y axis, from 0 to `height`, with rounded edges.
 fn rounded_cylinder(p: Vec3, radius: f32, height: f32, rounding: f32) -> f32 {
     let d = glam::Vec2::new((p.x * p.x + p.z * p.z).sqrt() - radius, (p.y - height * 0.5).abs() - height * 0.5)
         + glam::Vec2::splat(rounding);

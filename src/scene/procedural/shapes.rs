@@ -1,21 +1,21 @@
-//! Shapes that several scenes use. All face outwards, all are placed by [`Mesh::place`].
+//! Shapes for the built-in scenes. All of them face outwards and are transformed by [`Mesh::place`].
 
 use super::mesh::{MaterialId, Mesh};
 use glam::{Vec2, Vec3};
 use std::f32::consts::TAU;
 
-/// Cosine and sine of a share of a full turn; the turn's end is its start to the bit, so that seams have no crack.
+/// Cosine and sine of a share of a full turn. A full turn gives the same bits as none, so that seams have no cracks.
 pub fn turn(share: f32) -> (f32, f32) {
     let angle = (share - share.floor()) * TAU;
     (angle.cos(), angle.sin())
 }
 
-/// A smooth curve (Catmull-Rom) through points, `steps` pieces.
+/// A Catmull-Rom spline through points, sampled in `steps` segments.
 pub fn curve(points: &[Vec3], steps: usize) -> Vec<Vec3> {
     let last = points.len() - 1;
     let at = |i: isize| points[i.clamp(0, last as isize) as usize];
     let sample = |s: usize| {
-        // To the bit: a profile that ends on the axis must end on the axis.
+        // The last point is exact, because a profile that ends on the axis must end exactly there.
         if s == steps {
             return points[last];
         }
@@ -28,20 +28,20 @@ pub fn curve(points: &[Vec3], steps: usize) -> Vec<Vec3> {
     (0..=steps).map(sample).collect()
 }
 
-/// The same in the plane.
+/// Like [`curve`], for a profile of (radius, y).
 pub fn profile(points: &[(f32, f32)], steps: usize) -> Vec<Vec2> {
     let points: Vec<Vec3> = points.iter().map(|&(r, y)| Vec3::new(r, y, 0.0)).collect();
     curve(&points, steps).into_iter().map(|p| Vec2::new(p.x.max(0.0), p.y)).collect()
 }
 
 impl Mesh {
-    /// A flat parallelogram of `cells`, facing `u` cross `v`.
+    /// Adds a flat parallelogram of `cells`, which faces along `u` cross `v`.
     pub fn quad(&mut self, material: MaterialId, corner: Vec3, u: Vec3, v: Vec3, cells: [usize; 2]) {
         let normal = u.cross(v).normalize_or_zero();
         self.patch(material, cells, [false; 2], |s, t| (corner + u * s + v * t, normal));
     }
 
-    /// A box.
+    /// Adds an axis-aligned box.
     pub fn cuboid(&mut self, material: MaterialId, min: Vec3, max: Vec3) {
         let e = max - min;
         let (x, y, z) = (Vec3::X * e.x, Vec3::Y * e.y, Vec3::Z * e.z);
@@ -50,12 +50,13 @@ impl Mesh {
         }
     }
 
-    /// A box whose middle and edge lengths are given.
+    /// Adds an axis-aligned box with this centre and these edge lengths.
     pub fn block(&mut self, material: MaterialId, center: Vec3, size: Vec3) {
         self.cuboid(material, center - size * 0.5, center + size * 0.5);
     }
 
-    /// A surface given by its positions alone; normals from differences. `position` is asked a little outside of 0..=1.
+    /// Like [`Mesh::patch`], with normals from differences of positions. `position` is also evaluated slightly outside
+    /// of 0..=1.
     pub fn surface(
         &mut self,
         material: MaterialId,
@@ -65,7 +66,7 @@ impl Mesh {
     ) {
         const STEP: f32 = 1.0 / 1024.0;
         self.patch(material, cells, poles, |u, v| {
-            // At a pole the rows beside it have the normal.
+            // The normal at a pole is computed slightly away from it.
             let v_inside = v.clamp(if poles[0] { STEP } else { 0.0 }, if poles[1] { 1.0 - STEP } else { 1.0 });
             let du = position(u + STEP, v_inside) - position(u - STEP, v_inside);
             let dv = position(u, v_inside + STEP) - position(u, v_inside - STEP);
@@ -73,7 +74,8 @@ impl Mesh {
         });
     }
 
-    /// A smooth surface of revolution around y: `profile` holds (radius, y) from bottom to top seen on the right side.
+    /// Adds a smooth surface of revolution around y. `profile` has (radius, y); if it runs from bottom to top, the
+    /// surface faces away from the axis.
     pub fn lathe(&mut self, material: MaterialId, profile: &[Vec2], around: usize) {
         let rows = profile.len() - 1;
         let poles = [profile[0].x == 0.0, profile[rows].x == 0.0];
@@ -81,7 +83,7 @@ impl Mesh {
             let row = (v * rows as f32).round() as usize;
             let p = profile[row];
             let mut tangent = profile[(row + 1).min(rows)] - profile[row.saturating_sub(1)];
-            // Where the profile meets the axis the surface is level.
+            // At the axis the surface is horizontal.
             if p.x == 0.0 {
                 tangent = Vec2::new(if row == 0 { 1.0 } else { -1.0 }, 0.0);
             }
@@ -90,7 +92,7 @@ impl Mesh {
         });
     }
 
-    /// A surface of revolution with a sharp edge at every point of the profile.
+    /// Adds a surface of revolution with a sharp edge at every point of the profile.
     pub fn lathe_sharp(&mut self, material: MaterialId, profile: &[(f32, f32)], around: usize) {
         for pair in profile.windows(2) {
             let segment = [Vec2::from(pair[0]), Vec2::from(pair[1])];
@@ -105,7 +107,7 @@ impl Mesh {
         }
     }
 
-    /// A sphere of `8 n^2` triangles: an octahedron whose faces are divided and pushed outwards.
+    /// Adds a sphere of `8 n^2` triangles: an octahedron with subdivided faces, projected to the sphere.
     pub fn sphere(&mut self, material: MaterialId, center: Vec3, radius: f32, n: usize) {
         if !self.announce(8 * n * n) {
             return;
@@ -121,7 +123,7 @@ impl Mesh {
                     self.vertex(center + direction * radius, direction);
                 }
             }
-            // Row j begins behind rows of n + 1, n, ... vertices.
+            // Row j begins after rows of n + 1, n, ... vertices.
             let at = |i: usize, j: usize| first + (j * (2 * n + 3 - j) / 2 + i) as u32;
             for j in 0..n {
                 for i in 0..n - j {
@@ -137,12 +139,13 @@ impl Mesh {
         }
     }
 
-    /// A tube along `path` with a radius per point; where the first or last radius is 0, it is closed.
+    /// Adds a tube along `path` with a radius per point. It is closed at an end with radius 0.
     pub fn tube(&mut self, material: MaterialId, path: &[Vec3], radii: impl Fn(f32) -> f32, around: usize) {
         let rows = path.len() - 1;
         let radius = |row: usize| radii(row as f32 / rows as f32);
         let poles = [radius(0) == 0.0, radius(rows) == 0.0];
-        // Parallel transport: each ring's first axis is the one before it, made perpendicular again.
+        // Frames by parallel transport: the first axis of a ring is that of the previous one, made perpendicular to the
+        // path.
         let mut axis = (path[1] - path[0]).any_orthogonal_vector().normalize();
         let frames: Vec<[Vec3; 3]> = (0..=rows)
             .map(|row| {
@@ -167,12 +170,12 @@ impl Mesh {
         });
     }
 
-    /// A straight round bar with flat ends.
+    /// Adds a straight cylinder with flat ends.
     pub fn bar(&mut self, material: MaterialId, from: Vec3, to: Vec3, radius: f32, around: usize) {
         self.rod(material, &[from, to], radius, around);
     }
 
-    /// A tube of one radius with flat ends.
+    /// Adds a tube of constant radius with flat ends.
     pub fn rod(&mut self, material: MaterialId, path: &[Vec3], radius: f32, around: usize) {
         self.tube(material, path, |_| radius, around);
         let last = path.len() - 1;
@@ -180,7 +183,7 @@ impl Mesh {
         self.disc(material, path[last], (path[last] - path[last - 1]).normalize(), radius, around);
     }
 
-    /// A flat disc that faces `normal`.
+    /// Adds a flat disc that faces along `normal`.
     pub fn disc(&mut self, material: MaterialId, center: Vec3, normal: Vec3, radius: f32, around: usize) {
         let x = normal.any_orthogonal_vector().normalize() * radius;
         let y = normal.cross(x);
@@ -193,12 +196,12 @@ impl Mesh {
         self.polygon(material, &outline);
     }
 
-    /// A flat convex polygon, counter-clockwise seen from outside, as a fan: where it is round, thin triangles.
+    /// Adds a flat convex polygon, counter-clockwise seen from outside, as a fan.
     pub fn polygon(&mut self, material: MaterialId, outline: &[Vec3]) {
         if !self.announce(outline.len() - 2) {
             return;
         }
-        // Newell's normal: no corner is special.
+        // Newell's normal
         let next = outline.iter().cycle().skip(1);
         let normal: Vec3 = outline.iter().zip(next).map(|(a, b)| (*a - outline[0]).cross(*b - outline[0])).sum();
         let corners: Vec<u32> = outline.iter().map(|&p| self.vertex(p, normal)).collect();
@@ -207,8 +210,8 @@ impl Mesh {
         }
     }
 
-    /// A slab with a convex outline (x, z), counter-clockwise seen from above, from height `low` to `high`; its rim is
-    /// smooth.
+    /// Adds a slab from height `low` to `high` with a smooth rim. `outline` is convex, in (x, z), and counter-clockwise
+    /// seen from above.
     pub fn slab(&mut self, material: MaterialId, outline: &[Vec2], low: f32, high: f32) {
         let at = |p: Vec2, y: f32| Vec3::new(p.x, y, p.y);
         let n = outline.len();

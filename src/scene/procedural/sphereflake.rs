@@ -1,5 +1,5 @@
-//! `sphereflake` (Haines 1987, Standard Procedural Databases): spheres on spheres, each a third of its parent, on a
-//! chequered floor. The two largest generations are mirrors.
+//! `sphereflake` (Haines 1987, Standard Procedural Databases): recursive spheres, each with a third of its parent's
+//! radius, on a chequered floor. The two largest generations are mirrors.
 
 use super::mesh::{MaterialId, Mesh, fit, segments};
 use super::{Parameter, SceneInfo, Values, assemble};
@@ -13,12 +13,12 @@ pub(super) const INFO: SceneInfo = SceneInfo {
     build,
 };
 
-/// The floor's height; it does not touch the root sphere, whose radius is 1.
+/// Height of the floor; it does not touch the root sphere of radius 1.
 const FLOOR: f32 = -1.02;
 
 fn build(values: &Values) -> Scene {
     let target = values.triangles();
-    // Another generation has nine times as many spheres: it is worth it when about 150 triangles are left for each.
+    // A further generation has nine times as many spheres. It is added if there are at least 150 triangles per sphere.
     let generations = [1, 10, 91, 820, 7_381, 66_430].iter().rposition(|spheres| spheres * 150 <= target).unwrap_or(0);
     let mesh = fit(target, |mesh, detail| geometry(mesh, detail, generations));
     let lights = vec![
@@ -56,9 +56,10 @@ struct Flake {
 }
 
 impl Flake {
-    /// One sphere and its children: six around its equator, three around its pole, which points away from the parent.
+    /// Adds a sphere and its children: six around its equator, three around its pole, which points away from the
+    /// parent.
     fn grow(&self, mesh: &mut Mesh, center: Vec3, radius: f32, pole: Vec3, generation: usize) {
-        // Half as many segments per third of the radius: small spheres are seen smaller, but not too coarse.
+        // A child has a third of the radius and half of the segments.
         let n = segments(32.0 * 0.5f32.powi(generation as i32), self.detail, 1);
         mesh.sphere(self.materials[generation.min(4)], center, radius, n);
         if generation == self.generations {
@@ -71,7 +72,7 @@ impl Flake {
             let (turn, elevation) = (turn.to_radians(), elevation.to_radians());
             let local = Vec3::new(turn.cos() * elevation.cos(), elevation.sin(), turn.sin() * elevation.cos());
             let direction = (upright * local).normalize();
-            // A hair of distance, so that no two surfaces touch.
+            // A small gap ensures that no two surfaces touch.
             self.grow(mesh, center + direction * (radius * 4.002 / 3.0), radius / 3.0, direction, generation + 1);
         }
     }

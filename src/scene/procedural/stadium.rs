@@ -1,5 +1,6 @@
-//! `stadium`: the proverbial teapot in a stadium. Half of all triangles are in a teapot of 30 cm on a pedestal in the
-//! middle of a stadium 230 m wide: one grid cell holds them all (BART's robots have this character).
+//! `stadium`: the proverbial teapot in a stadium. Half of all triangles are in a teapot of 30 cm, on a pedestal at the
+//! centre of a stadium 230 m wide, so that one cell of a uniform grid holds them all. BART's robots have a similar
+//! distribution.
 
 use super::mesh::{Mesh, fit, segments};
 use super::shapes::{profile, turn};
@@ -14,27 +15,27 @@ pub(super) const INFO: SceneInfo = SceneInfo {
     build,
 };
 
-/// Where the teapot stands.
+/// Height of the top of the pedestal, in metres.
 const TABLE: f32 = 1.0;
-/// Half axes of the field's edge.
+/// Semi-axes of the edge of the field, in metres.
 const FIELD: Vec2 = Vec2::new(58.0, 40.0);
-/// Rows of seats.
+/// Number of rows of seats.
 const ROWS: usize = 26;
 
 fn build(values: &Values) -> Scene {
     let mesh = fit(values.triangles(), geometry);
-    // In front of the lamps, so that no mast shades its own light.
+    // Lights are in front of the lamps, so that no mast casts a shadow of its own light.
     let before = |p: Vec3| p * 0.97 + Vec3::Y * 4.0;
     let lights = masts().map(|p| Light::new(before(p), Vec3::new(0.34, 0.335, 0.32))).to_vec();
     assemble(mesh, lights, Vec3::new(0.36, 0.52, 0.78), Some("stadium"))
 }
 
-/// The lamps' places.
+/// The positions of the lamps.
 fn masts() -> [Vec3; 4] {
     [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(x, z)| Vec3::new(x * 88.0, 46.0, z * 72.0))
 }
 
-/// The point of the oval that lies `out` metres outside of the field's edge.
+/// A point on the oval `out` metres outside of the edge of the field, at a share of the full turn.
 fn oval(share: f32, out: f32, y: f32) -> Vec3 {
     let (c, s) = turn(share);
     Vec3::new((FIELD.x + out) * c, y, -(FIELD.y + out) * s)
@@ -70,7 +71,7 @@ fn field(mesh: &mut Mesh, detail: f32) {
     let grass = [Vec3::new(0.17, 0.36, 0.10), Vec3::new(0.21, 0.42, 0.13)].map(|c| mesh.material(Material::matt(c)));
     let track = mesh.material(Material::matt(Vec3::new(0.52, 0.22, 0.14)));
     let chalk = mesh.material(Material::matt(Vec3::splat(0.9)));
-    // Ten mown stripes; beside them the track reaches up to the stands, a little lower.
+    // Ten mown stripes; the track around them extends to the stands, slightly lower
     let stripe = 76.0 / 10.0;
     for i in 0..10 {
         let corner = Vec3::new(-38.0 + i as f32 * stripe, 0.0, -24.0);
@@ -79,7 +80,7 @@ fn field(mesh: &mut Mesh, detail: f32) {
     let around = segments(96.0, detail, 24);
     let rim: Vec<Vec3> = (0..around).map(|i| oval(i as f32 / around as f32, 0.2, -0.05)).collect();
     mesh.polygon(track, &rim);
-    // Chalk lines are thin slabs: long triangles.
+    // Chalk lines are thin slabs of long triangles.
     let mut line = |x0: f32, z0: f32, x1: f32, z1: f32| {
         mesh.cuboid(chalk, Vec3::new(x0, -0.01, z0), Vec3::new(x1, 0.012, z1));
     };
@@ -89,13 +90,13 @@ fn field(mesh: &mut Mesh, detail: f32) {
     for x in [-37.0, -0.05, 36.9] {
         line(x, -22.9, x + 0.1, 22.9);
     }
-    // The centre circle.
+    // The centre circle
     let cells = segments(96.0, detail, 24);
     mesh.surface(chalk, [cells, 1], [false; 2], |u, v| {
         let (c, s) = turn(u);
         Vec3::new(c, 0.0, -s) * (9.2 - 0.12 * v) + Vec3::Y * 0.006
     });
-    // Goals.
+    // The goals
     for x in [-37.0, 37.0] {
         let corners =
             [Vec3::new(x, 0.0, -3.66), Vec3::new(x, 2.44, -3.66), Vec3::new(x, 2.44, 3.66), Vec3::new(x, 0.0, 3.66)];
@@ -105,7 +106,7 @@ fn field(mesh: &mut Mesh, detail: f32) {
     }
 }
 
-/// Terraces: a riser and a tread per row, and the wall behind them.
+/// Adds the stands: a riser, a tread and seats per row, and the wall behind them.
 fn stands(mesh: &mut Mesh, detail: f32) {
     let concrete = mesh.material(Material::matt(Vec3::splat(0.55)));
     let seats = [Vec3::new(0.12, 0.22, 0.45), Vec3::new(0.45, 0.12, 0.12), Vec3::new(0.75, 0.75, 0.78)];
@@ -119,13 +120,13 @@ fn stands(mesh: &mut Mesh, detail: f32) {
             oval(u, out, y)
         });
     };
-    // Rings run outwards and upwards: their derivative by u crossed with that by v points at the field, or up.
+    // Rings are ordered such that the cross product of the derivatives by u and v points to the field or upwards.
     ring(concrete, (2.0, 1.2), (2.0, -0.05));
     ring(concrete, (2.0, -0.05), (0.2, -0.05));
     for row in 0..ROWS {
         let (out, y) = place(row);
         ring(concrete, (out + depth, y), (out, y));
-        // The seats of a row are one band, broken into blocks of colour by row.
+        // The seats of a row are one band; the colour changes every five rows.
         let band = seats[(row / 5) % 3];
         ring(band, (out + 0.62, y + 0.40), (out + 0.28, y + 0.40));
         ring(band, (out + 0.28, y + 0.40), (out + 0.28, y + 0.02));
@@ -137,7 +138,7 @@ fn stands(mesh: &mut Mesh, detail: f32) {
     ring(concrete, (out + 80.0, -0.2), (out + 3.0, -0.2));
 }
 
-/// A canopy over the upper rows on slender posts.
+/// Adds a roof over the upper rows on slender posts.
 fn roof(mesh: &mut Mesh, detail: f32) {
     let sheet = Material { ambient: Vec3::splat(0.22), ..Material::matt(Vec3::new(0.70, 0.72, 0.76)) };
     let sheet = mesh.material(sheet.shiny(Vec3::splat(0.3), 30.0, 0.0));
@@ -152,7 +153,7 @@ fn roof(mesh: &mut Mesh, detail: f32) {
         let (out, y) = arch(v);
         oval(u, out, y - 0.35)
     });
-    // The edges between the two sheets.
+    // The edges between the two sheets
     for (edge, down) in [(0.0, true), (1.0, false)] {
         mesh.surface(sheet, [around, 1], [false; 2], |u, v| {
             let (out, y) = arch(edge);
@@ -173,7 +174,7 @@ fn floodlights(mesh: &mut Mesh, detail: f32) {
     for top in masts() {
         let foot = Vec3::new(top.x, -0.2, top.z);
         mesh.bar(steel, foot, top, 0.6, segments(12.0, detail, 5));
-        // The panel looks at the field; its lamps stand out by a hand's breadth.
+        // The panel faces the field; its lamps protrude from it.
         let facing = Quat::from_rotation_y((-top.x).atan2(-top.z));
         mesh.place = Affine3A::from_rotation_translation(facing, top + Vec3::Y * 2.5);
         mesh.block(steel, Vec3::ZERO, Vec3::new(9.0, 5.0, 0.6));

@@ -1,11 +1,12 @@
-//! A teapot of our own: body and lid turned on a lathe, spout and handle bent from tubes that end inside the body.
+//! A teapot (not Newell's): body and lid are surfaces of revolution, spout and handle are tubes that end inside the
+//! body.
 
 use super::mesh::{MaterialId, Mesh, segments};
 use super::shapes::{curve, profile};
 use glam::Vec3;
 
 impl Mesh {
-    /// A teapot that stands at the origin, about 3 wide and 1.6 high before `place`; some 50,000 triangles at detail 1.
+    /// Adds a teapot with its base at the origin, about 3 wide and 1.6 high, of about 50,000 triangles at detail 1.
     pub fn teapot(&mut self, material: MaterialId, knob: MaterialId, detail: f32) {
         let around = segments(128.0, detail, 12);
         let body = [
@@ -43,7 +44,7 @@ impl Mesh {
             |t| 0.27 - 0.19 * t.min(0.75) / 0.75 + 0.02 * (t - 0.75).max(0.0),
             thin,
         );
-        // The spout's inside, so that one looks into it and not through it.
+        // The inner surface of the spout, so that one cannot see through its outer surface from inside
         let inner = |t: f32| 0.25 - 0.19 * t.min(0.75) / 0.75 + 0.02 * (t - 0.75).max(0.0);
         self.inside_tube(material, &curve(&spout, rows), inner, thin);
 
@@ -58,7 +59,7 @@ impl Mesh {
         self.tube(material, &curve(&handle, rows), |t| 0.10 - 0.03 * t, thin);
     }
 
-    /// A tube seen from within: the same rings, turned inside out.
+    /// Adds a tube that faces inwards.
     fn inside_tube(&mut self, material: MaterialId, path: &[Vec3], radii: impl Fn(f32) -> f32, around: usize) {
         let (vertices, triangles) = (self.vertices.len(), self.triangles.len());
         self.tube(material, path, radii, around);

@@ -1,4 +1,4 @@
-//! `terrain`: a fractal heightfield of even triangles with lakes (mirrors) in its valleys.
+//! `terrain`: a fractal heightfield of triangles of uniform size, with lakes (mirrors) in its valleys.
 
 use super::mesh::Mesh;
 use super::noise::{fractal, noise2, ridged};
@@ -15,12 +15,12 @@ pub(super) const INFO: SceneInfo = SceneInfo {
     build,
 };
 
-/// Edge of the square, in kilometres.
+/// Edge length of the square, in kilometres.
 const SIDE: f32 = 10.0;
-/// Height of the lakes.
+/// Height of the lakes, in kilometres.
 const LAKE: f32 = 0.38;
 
-/// Height over the sea at (x, z).
+/// Height at (x, z), in kilometres.
 fn height(p: Vec2) -> f32 {
     let bend = Vec2::new(noise2(p * 0.5, 101), noise2(p * 0.5, 102));
     let crests = ridged((p + bend * 0.5) * 0.42, 9, 7);
@@ -31,10 +31,10 @@ fn height(p: Vec2) -> f32 {
 
 fn build(values: &Values) -> Scene {
     let target = values.triangles() as f32;
-    // Two triangles per cell; the lakes' own cells are eight times as wide and few.
+    // There are two triangles per cell; the lakes consist of a few cells that are eight times as wide.
     let n = ((target * 0.995 / 2.0).sqrt().floor() as usize).max(8);
     let mut mesh = Mesh::plain();
-    // What lies in the shade has the light of the sky.
+    // The ambient light is bluish, as a substitute for light of the sky in shadows.
     let ground = |r, g, b| {
         let colour = Vec3::new(r, g, b);
         Material { ambient: colour * Vec3::new(0.20, 0.23, 0.28), ..Material::matt(colour) }
@@ -56,7 +56,7 @@ fn build(values: &Values) -> Scene {
         for i in 0..n as u32 {
             let a = j * row + i;
             let (b, c, d) = (a + 1, a + row + 1, a + row);
-            // The diagonal changes from cell to cell, so that no direction is preferred.
+            // The diagonal alternates from cell to cell, so that no direction is preferred.
             let pair = if (i + j) % 2 == 0 { [[a, d, c], [a, c, b]] } else { [[a, d, b], [b, d, c]] };
             for vertices in pair {
                 let [p, q, r] = vertices.map(|v| mesh.vertices[v as usize].position);
@@ -82,13 +82,13 @@ fn build(values: &Values) -> Scene {
     assemble(mesh, vec![sun], Vec3::new(0.55, 0.70, 0.90), Some("terrain"))
 }
 
-/// Level water wherever the ground of a wide cell lies lower somewhere.
+/// Adds water to each wide cell in which a vertex of the ground is below the height of the lakes.
 fn lakes(mesh: &mut Mesh, material: u32, n: usize) {
     let wide = (n / 8).max(4);
     let edge = SIDE / wide as f32;
     for j in 0..wide {
         for i in 0..wide {
-            // The ground's vertices on and around the wide cell.
+            // The vertices of the ground on and around the wide cell
             let span = |k: usize| k * n / wide..=((k + 1) * n).div_ceil(wide);
             let is_low = |k: usize| mesh.vertices[k].position.y < LAKE;
             if span(j).any(|row| span(i).any(|column| is_low(row * (n + 1) + column))) {

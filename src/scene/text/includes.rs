@@ -1,4 +1,4 @@
-//! Files that include others: found, held against loops and against leaving the scene's folder, read once.
+//! Opens included files: refuses loops and files outside of the scene's folder, and reads each file once.
 
 use super::{Fault, quote_bytes};
 use crate::error::Result;
@@ -6,37 +6,39 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// Most files inside each other.
+/// The largest nesting depth of includes.
 const MAX_DEPTH: usize = 64;
 
-/// Most includes that are followed in all.
+/// The largest number of includes in one pass.
 const MAX_READINGS: usize = 20_000;
 
-/// Bytes that may be gone through in all, readers' second passes included: so many in any case, and so many times the
-/// files' sizes. Some hundred megabytes are a second.
+/// The limit of bytes that are parsed in all passes together is `BASE` plus `TIMES` the size of all files. A second is
+/// enough for some hundred megabytes.
 const BASE: usize = 64 << 20;
 const TIMES: usize = 16;
 
-/// The files of a scene.
+/// The scene's file and the files that it includes.
 pub struct Includes {
-    /// The first file, as it was named, and its bytes.
+    /// The scene's file as the user named it, and its bytes.
     first: (PathBuf, Rc<Vec<u8>>),
-    /// Its folder, without links; empty until something is included, for most files include nothing.
+    /// Canonical path of the scene's folder; empty until the first include.
     root: PathBuf,
+    /// True if includes may leave the scene's folder.
     outside: bool,
-    /// Bytes by the file's path without links.
+    /// The bytes of files by their canonical path.
     files: HashMap<PathBuf, Rc<Vec<u8>>>,
-    /// What is being read, from the first file inwards.
+    /// Canonical paths of the open files, the scene's file first.
     open: Vec<PathBuf>,
+    /// Number of includes in this pass.
     readings: usize,
-    /// Bytes of all files, each once.
+    /// Size of all files in bytes, each counted once.
     bytes: usize,
-    /// Bytes gone through.
+    /// Number of bytes that were parsed, in all passes.
     passed: usize,
 }
 
 impl Includes {
-    /// The scene whose first file is `path`, and its bytes. `outside` says that includes may leave its folder.
+    /// Reads the scene's file. `outside` allows includes to leave its folder.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -55,7 +57,7 @@ impl Includes {
         Ok((includes, bytes))
     }
 
-    /// Finds out where the first file is.
+    /// Resolves the path of the scene's file, before the first include.
     fn locate(&mut self) {
         let (path, bytes) = &self.first;
         let whole = path.canonicalize().unwrap_or_else(|_| path.clone());
@@ -64,21 +66,21 @@ impl Includes {
         self.open.push(whole);
     }
 
-    /// Bytes of all files so far, each counted once.
+    /// Size of all files so far in bytes, each counted once.
     pub fn bytes(&self) -> usize {
         self.bytes
     }
 
-    /// Lets go of the first file's bytes: no file may include it, so that nobody asks for them again.
+    /// Releases the bytes of the scene's file. They are not needed again, because no file may include it.
     pub fn release_first(&mut self) {
         self.first.1 = Rc::default();
     }
 
-    /// Opens the file that `including` calls `name`: its path as errors show it, and its bytes. [`Includes::close`]
-    /// ends it.
+    /// Opens the file `name` that the file `including` includes. Returns its path for messages, and its bytes. The
+    /// caller must call [`Includes::close`] after reading it.
     ///
     /// # Errors
-    /// It may not be included, or cannot be read.
+    /// The file must not be included, or cannot be read.
     pub fn open(&mut self, including: &Path, name: &[u8]) -> Result<(PathBuf, Rc<Vec<u8>>), Fault> {
         let fault = |problem: &str, hint: String| {
             Err(Fault::new(None, format!("include {}: {problem}", quote_bytes(name)), hint))
@@ -90,9 +92,9 @@ impl Includes {
         let whole = match shown.canonicalize() {
             Ok(whole) => whole,
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
-                // A quoted name may have line ends in it
+                // A quoted name may contain line ends.
                 let place: String = shown.to_string_lossy().chars().filter(|c| !c.is_control()).collect();
-                return fault("no such file", format!("it would be {place}"));
+                return fault("no such file", format!("it was searched as {place}"));
             }
             Err(e) => return fault(&format!("cannot be read: {e}"), String::new()),
         };
@@ -100,10 +102,10 @@ impl Includes {
             return fault("lies outside of the scene's folder", "allow that with FILE:outside=yes".into());
         }
         if self.open.contains(&whole) {
-            return fault("the file includes itself, perhaps by way of others", "break the loop".into());
+            return fault("the file includes itself, directly or through other files", "break the loop".into());
         }
         if self.open.len() > MAX_DEPTH {
-            return fault("too many files inside each other", format!("{MAX_DEPTH} are allowed"));
+            return fault("the includes are nested too deeply", format!("{MAX_DEPTH} levels are allowed"));
         }
         let bytes = match self.files.get(&whole) {
             Some(bytes) => Rc::clone(bytes),
@@ -121,18 +123,18 @@ impl Includes {
         self.passed += bytes.len();
         if self.readings > MAX_READINGS || self.passed > BASE + TIMES * self.bytes {
             let problem = format!("files are included too often, {} MiB in all", self.passed >> 20);
-            return fault(&problem, "are there includes of includes of includes?".into());
+            return fault(&problem, "reduce the nested includes".into());
         }
         self.open.push(whole);
         Ok((shown, bytes))
     }
 
-    /// Ends the file that was opened last.
+    /// Closes the file that was opened last.
     pub fn close(&mut self) {
         self.open.pop();
     }
 
-    /// Starts again with the first file. What has been gone through before counts.
+    /// Starts another pass at the scene's file. The bytes of earlier passes still count.
     pub fn rewind(&mut self) {
         self.open.truncate(1);
         self.readings = 0;

@@ -1,84 +1,83 @@
-//! What readers of text formats share: words with their lines, numbers, faults.
+//! Shared parts of the readers of text formats: tokens with line numbers, numbers, includes, errors.
 
-mod home;
+mod folders;
 mod includes;
 pub mod number;
-mod words;
+mod numbers;
+mod tokenizer;
 
 use crate::error::Error;
-pub use home::Home;
+pub use folders::SceneFolders;
 pub use includes::Includes;
 use std::path::Path;
-pub use words::{Syntax, Words};
+pub use tokenizer::{Syntax, Tokenizer};
 
-/// What is wrong with a file, before the file's name is added.
+/// An error in a file, without the file's name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// Counted from 1.
+    /// Line number, counted from 1.
     pub line: Option<usize>,
-    /// What is wrong.
     pub problem: String,
-    /// What to do about it; may be empty.
+    /// Tells what to do about the problem; may be empty.
     pub hint: String,
 }
 
 impl Fault {
-    /// A fault.
     pub fn new(line: Option<usize>, problem: impl Into<String>, hint: impl Into<String>) -> Fault {
         Fault { line, problem: problem.into(), hint: hint.into() }
     }
 
-    /// With this line, if it has none of its own.
+    /// Sets the line number, unless it is already set.
     pub fn at(self, line: usize) -> Fault {
         Fault { line: self.line.or(Some(line)), ..self }
     }
 
-    /// The error for the user.
+    /// Adds the file's name.
     pub fn of(self, path: &Path) -> Error {
         Error::file(path, self.line, self.problem, self.hint)
     }
 }
 
-/// Why reading a file that may include others ends.
+/// An error while reading a file that may include others.
 #[derive(Debug)]
-pub enum Trouble {
-    /// Something in this file.
+pub enum ReadError {
+    /// An error in this file.
     Here(Fault),
-    /// Something in a file that it includes.
+    /// An error in an included file.
     Included(Error),
 }
 
-impl Trouble {
-    /// The error for the user, of something that was read from the file `path`.
+impl ReadError {
+    /// Adds the file's name to an error in this file.
     pub fn of(self, path: &Path) -> Error {
         match self {
-            Trouble::Here(fault) => fault.of(path),
-            Trouble::Included(error) => error,
+            ReadError::Here(fault) => fault.of(path),
+            ReadError::Included(error) => error,
         }
     }
 
-    /// With this line, if it is here and has none of its own.
-    pub fn at(self, line: usize) -> Trouble {
+    /// Sets the line number of an error in this file, unless it is already set.
+    pub fn at(self, line: usize) -> ReadError {
         match self {
-            Trouble::Here(fault) => Trouble::Here(fault.at(line)),
-            Trouble::Included(error) => Trouble::Included(error),
+            ReadError::Here(fault) => ReadError::Here(fault.at(line)),
+            ReadError::Included(error) => ReadError::Included(error),
         }
     }
 }
 
-impl From<Fault> for Trouble {
-    fn from(fault: Fault) -> Trouble {
-        Trouble::Here(fault)
+impl From<Fault> for ReadError {
+    fn from(fault: Fault) -> ReadError {
+        ReadError::Here(fault)
     }
 }
 
-impl From<Error> for Trouble {
-    fn from(error: Error) -> Trouble {
-        Trouble::Included(error)
+impl From<Error> for ReadError {
+    fn from(error: Error) -> ReadError {
+        ReadError::Included(error)
     }
 }
 
-/// A piece of the file inside an error: in quotes, printable, short.
+/// Formats a piece of the file for a message: quoted, escaped, and truncated to 40 characters.
 pub fn quote(text: &str) -> String {
     let mut shown: String = text.chars().take(40).collect();
     if shown.len() < text.len() {
@@ -87,8 +86,8 @@ pub fn quote(text: &str) -> String {
     format!("`{}`", shown.escape_debug())
 }
 
-/// The same for bytes, which may be in any encoding.
+/// Like [`quote`], for bytes in any encoding.
 pub fn quote_bytes(bytes: &[u8]) -> String {
-    // A character has four bytes at most: what lies behind 41 of them is not shown anyway
+    // A character has at most four bytes, and at most 41 characters are examined.
     quote(&String::from_utf8_lossy(&bytes[..bytes.len().min(164)]))
 }

@@ -1,8 +1,8 @@
-//! Numbers at the start of a slice of bytes, without copying; each function returns the value and its length.
+//! Parses numbers at the start of a slice of bytes; each function returns the value and the length of its text.
 //!
-//! Almost every coordinate in a file has few digits. Then the mantissa and the power of ten are both exact floats, and
-//! one multiplication or division rounds correctly (Clinger 1990); the rest goes to the standard library. Both ways
-//! give the same bits.
+//! Almost every coordinate in a file has few digits. Its mantissa and its power of ten are then exact floats, so that
+//! one division rounds correctly (Clinger 1990). All other numbers are parsed by the standard library, which gives the
+//! same bits.
 
 /// Powers of ten that are exact in single precision (5^10 < 2^24).
 const EXACT_F32: [f32; 11] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10];
@@ -13,19 +13,19 @@ const EXACT_F64: [f64; 23] = [
     1e21, 1e22,
 ];
 
-/// Length of the token at the start: everything above the space.
+/// Length of the token at the start: all bytes above the space.
 #[inline]
 pub fn token_length(bytes: &[u8]) -> usize {
     bytes.iter().position(|&b| is_blank(b)).unwrap_or(bytes.len())
 }
 
-/// True for what ends a token.
+/// True for a byte that ends a token.
 #[inline(always)]
 fn is_blank(byte: u8) -> bool {
     byte <= b' '
 }
 
-/// True where a blank byte, or the end of the slice, ends a number.
+/// True if a number ends at `at`: there is a blank byte, or the end of the slice.
 #[inline(always)]
 fn ends(bytes: &[u8], at: usize, blank: impl Fn(u8) -> bool) -> bool {
     bytes.get(at).is_none_or(|&b| blank(b))
@@ -35,12 +35,12 @@ fn ends(bytes: &[u8], at: usize, blank: impl Fn(u8) -> bool) -> bool {
 struct Decimal {
     negative: bool,
     mantissa: u64,
-    /// Digits after the point.
+    /// Number of digits after the point.
     places: usize,
     length: usize,
 }
 
-/// One that `blank` bytes or the end of the slice follow.
+/// Parses a [`Decimal`] that is followed by a `blank` byte or the end of the slice.
 #[inline(always)]
 fn decimal(bytes: &[u8], blank: impl Fn(u8) -> bool) -> Option<Decimal> {
     let negative = bytes.first() == Some(&b'-');
@@ -66,7 +66,7 @@ fn decimal(bytes: &[u8], blank: impl Fn(u8) -> bool) -> Option<Decimal> {
     ((1..=19).contains(&digits) && ends(bytes, at, blank)).then_some(Decimal { negative, mantissa, places, length: at })
 }
 
-/// A number in single precision, correctly rounded; also infinite or NaN, if the text says so.
+/// Parses a number in single precision, correctly rounded. The texts `inf` and `NaN` are accepted.
 #[inline]
 pub fn float(bytes: &[u8]) -> Option<(f32, usize)> {
     match decimal(bytes, is_blank) {
@@ -78,8 +78,8 @@ pub fn float(bytes: &[u8]) -> Option<(f32, usize)> {
     }
 }
 
-/// A number in double precision of the kind that most are: few digits, no exponent, and a blank behind it. `None` says
-/// nothing about others.
+/// Parses a number in double precision with few digits, no exponent, and a blank after it, as most numbers are. `None`
+/// does not mean that there is no number.
 #[inline(always)]
 pub fn plain_double(bytes: &[u8], blank: impl Fn(u8) -> bool) -> Option<(f64, usize)> {
     let d = decimal(bytes, blank)?;
@@ -89,13 +89,13 @@ pub fn plain_double(bytes: &[u8], blank: impl Fn(u8) -> bool) -> Option<(f64, us
     })
 }
 
-/// A number in double precision, correctly rounded; also infinite or NaN, if the text says so.
+/// Parses a number in double precision, correctly rounded. The texts `inf` and `NaN` are accepted.
 #[inline]
 pub fn double(bytes: &[u8]) -> Option<(f64, usize)> {
     plain_double(bytes, is_blank).or_else(|| by_standard_library(bytes))
 }
 
-/// A whole number that fits into 18 digits, and thereby any index.
+/// Parses an integer of at most 18 digits.
 #[inline]
 pub fn integer(bytes: &[u8]) -> Option<(i64, usize)> {
     let negative = bytes.first() == Some(&b'-');
@@ -136,9 +136,10 @@ mod tests {
         }
     }
 
-    /// Of every length before and behind the point, with every kind of byte behind it, up to the end of the slice and not.
+    /// Covers all numbers of digits before and after the point, followed by every kind of byte or by the end of the
+    /// slice.
     #[test]
-    fn digits_of_any_number() {
+    fn any_number_of_digits_is_parsed() {
         let pool = "9182736450918273645";
         for whole in 0..=pool.len() {
             for places in 0..=pool.len() - whole {
@@ -161,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn refuses_what_is_no_number() {
+    fn refuses_other_texts() {
         for text in ["", "-", "+", ".", "-.", "1..2", "1,5", "1e", "0x10", "one", "1-", "--1", "1_000"] {
             assert!(float(text.as_bytes()).is_none(), "{text}");
             assert!(double(text.as_bytes()).is_none(), "{text}");

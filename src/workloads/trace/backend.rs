@@ -1,10 +1,13 @@
-//! What a device must be able to do. Two implement it: [`crate::workloads::trace`] and [`crate::workloads::trace::gpu`].
+//! The interface of a device to ray tracing, and the types of its answers. [`crate::device::CpuDevice`] and
+//! [`crate::device::VulkanDevice`] implement it.
 
 use crate::camera::View;
+pub use crate::device::{DeviceInfo, DeviceType, FrameTime, Interrupted, KernelInfo, POISON};
 use crate::error::{Error, Result};
 use crate::math::{Aabb, Hit, MISS, T_MAX};
 use crate::scene::Scene;
 use crate::scene::placement::{exponent_of, power_of_two};
+pub use crate::workloads::trace::count::Counters;
 use crate::workloads::trace::method::Group;
 pub use crate::workloads::trace::rays::{Config, MAX_BOUNCES};
 use crate::workloads::trace::{Method, Structure};
@@ -12,38 +15,13 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// What one ray type of one pixel cost. Six words, as the counting kernels write them.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
-#[repr(C)]
-pub struct Counters {
-    /// Rays of this type.
-    pub rays: u32,
-    /// Inner nodes visited; the grid counts its cells here.
-    pub inner: u32,
-    /// Leaves visited (not counted by the grid).
-    pub leaves: u32,
-    /// Ray/triangle tests.
-    pub tests: u32,
-    /// Entries taken from a stack.
-    pub pops: u32,
-    /// Restarts at (or below) the root.
-    pub restarts: u32,
-}
-
-impl Counters {
-    /// Traversal steps: nodes visited, or cells for a grid (SPEC section 6).
-    pub fn steps(&self) -> u32 {
-        self.inner + self.leaves
-    }
-}
-
 /// Counters of one pixel by ray type: primary, shadow, reflected.
 pub type PixelCounters = [Counters; 3];
 
 /// Names of the ray types, in the order of [`PixelCounters`].
 pub const RAY_TYPES: [&str; 3] = ["primary", "shadow", "reflected"];
 
-/// What a timed kernel leaves behind for a pixel.
+/// The output of a timed kernel for a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Pixel {
@@ -53,10 +31,7 @@ pub struct Pixel {
     pub rgba: u32,
 }
 
-/// What output buffers are filled with before a kernel runs: no triangle, no colour (alpha 0).
-pub const POISON: u32 = 0xDEAD_BEEF;
-
-/// What a counting kernel leaves behind for a pixel (22 words).
+/// The output of a counting kernel for a pixel (22 words).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct CountedPixel {
@@ -70,16 +45,16 @@ pub struct CountedPixel {
     pub counters: PixelCounters,
 }
 
-/// How far off a surface secondary rays start, in scene units: far above the rounding of coordinates of the scene's
-/// size (about 1e-7 of it), far below anything that is seen. In a scene more than about 21 diagonals from
+/// The distance from a surface at which secondary rays start, in scene units: far above the rounding of coordinates of
+/// the scene's size (about 1e-7 of it), far below anything visible. In a scene more than about 21 diagonals from
 /// the origin, coordinates are rounded more coarsely, and their size decides: [`ROUNDINGS`].
 pub fn surface_epsilon(bounds: Aabb) -> f32 {
     let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
     (bounds.diagonal() * 1.0e-5).max(reach * ROUNDINGS)
 }
 
-/// How far from a point a shadow ray from a light starts at most, in scene units: four diagonals. Nothing lies beyond, and
-/// rays that start at a distant light could not tell the point from its neighbours.
+/// The greatest distance from a point at which a shadow ray from a light starts, in scene units: four diagonals.
+/// Nothing is farther away, and rays that start at a distant light could not tell the point from its neighbours.
 pub fn shadow_reach(bounds: Aabb) -> f32 {
     bounds.diagonal() * 4.0
 }
@@ -92,14 +67,14 @@ const ROUNDINGS: f32 = 8.0 / (1 << 24) as f32;
 /// Lengths that secondary rays depend on, in scene units.
 #[derive(Clone, Copy, Debug)]
 pub struct Lengths {
-    /// How far off a surface they start, see [`surface_epsilon`].
+    /// The distance from a surface at which they start, see [`surface_epsilon`].
     pub epsilon: f32,
-    /// How far from a point shadow rays from a light start at most, see [`shadow_reach`].
+    /// The greatest distance from a point at which shadow rays from a light start, see [`shadow_reach`].
     pub reach: f32,
 }
 
 impl Lengths {
-    /// Those of a scene with these bounds.
+    /// The lengths for a scene with these bounds.
     pub fn new(bounds: Aabb) -> Lengths {
         Lengths { epsilon: surface_epsilon(bounds), reach: shadow_reach(bounds) }
     }
@@ -134,6 +109,9 @@ pub struct Tile {
     pub rows: u32,
 }
 
+/// Frames that are rendered or counted, not timed, are split into bands of about this many pixels.
+pub(crate) const BAND_PIXELS: u32 = 262_144;
+
 /// Splits an image into about `across` x `down` tiles of whole work-groups, row by row.
 pub fn tiles(size: Size, across: u32, down: u32, group: Group) -> Vec<Tile> {
     let columns = size.width.div_ceil(across.max(1)).next_multiple_of(group.width);
@@ -148,74 +126,17 @@ pub fn tiles(size: Size, across: u32, down: u32, group: Group) -> Vec<Tile> {
     tiles
 }
 
-/// How long one frame took.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct FrameTime {
-    /// By the device's own timestamps, in nanoseconds; `None` where it has none.
-    pub device_ns: Option<u64>,
-    /// By the host's clock, from the previous frame's completion (or the start) to this one's, in nanoseconds.
-    pub wall_ns: u64,
-}
-
-/// What a timed path left behind.
+/// The result of timing a path.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Timed {
-    /// Of its last frame, rows from the top; empty where no path was timed.
+    /// The image of its last frame, rows from the top; empty if no path was timed.
     pub pixels: Vec<Pixel>,
-    /// Dispatches per frame: one, unless the image was split into tiles, or a watchdog was in the way. 0 where nothing is
-    /// dispatched.
+    /// Dispatches per frame: one, unless the image was split into tiles or for a watchdog. 0 on the CPU, which
+    /// dispatches nothing.
     pub dispatches: u32,
 }
 
-/// What kind of device it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum DeviceType {
-    /// The CPU twins of this crate.
-    CpuTwin,
-    /// A Vulkan driver that computes on the CPU (lavapipe): its times do not rank structures for a GPU.
-    SoftwareRasteriser,
-    /// A GPU that shares the CPU's memory.
-    IntegratedGpu,
-    /// A GPU of its own.
-    DiscreteGpu,
-    /// A GPU behind a hypervisor.
-    VirtualGpu,
-    /// Anything else.
-    Other,
-}
-
-/// A device, as it stands in a run's provenance.
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
-pub struct DeviceInfo {
-    /// Adapter name, or the processor's name for the twins.
-    pub name: String,
-    /// Kind.
-    pub device_type: DeviceType,
-    /// `vulkan`, or `cpu` for the twins.
-    pub backend: String,
-    /// Driver name and version; empty for the twins.
-    pub driver: String,
-    /// Nanoseconds per timestamp tick; `None` without timestamps.
-    pub timestamp_period_ns: Option<f32>,
-    /// True if kernels are compiled with wgpu's bounds checks and loop bounds.
-    pub checked: bool,
-    /// Optional features that are in use, by name.
-    pub features: Vec<String>,
-    /// Limits that decide what fits, by name.
-    pub limits: std::collections::BTreeMap<String, u64>,
-    /// Threads that compute: of the twins, or of a software rasteriser.
-    pub threads: Option<usize>,
-}
-
-impl DeviceInfo {
-    /// True where device and twins agree to the bit: the twins themselves, and lavapipe (SPEC section 12).
-    pub fn is_exact(&self) -> bool {
-        matches!(self.device_type, DeviceType::CpuTwin | DeviceType::SoftwareRasteriser)
-    }
-}
-
-/// A ray given by a user, in the coordinates of the scene as it lies in memory ([`crate::scene::Placement`]).
+/// A ray given by a user, in the coordinates of the scene in memory ([`crate::scene::Placement`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GivenRay {
     /// Start.
@@ -226,7 +147,7 @@ pub struct GivenRay {
 
 impl GivenRay {
     /// The ray with its direction scaled by a power of two, so that its largest component is 1 to 2 and no product of
-    /// it leaves the range of floats; and the exponent of that power. What has no length stays as it is.
+    /// it leaves the range of floats; and the exponent of that power. A direction without length stays as it is.
     pub fn unit(&self) -> (GivenRay, i32) {
         let largest = f64::from(self.direction.abs().max_element());
         if !(largest > 0.0 && largest.is_finite()) {
@@ -238,11 +159,11 @@ impl GivenRay {
     }
 }
 
-/// Traces given rays with directions of any length: `trace` is given ones of a length near 1, in the same order, and
-/// the distances that it finds are scaled back. `first` is the number of the first ray, for errors.
+/// Traces given rays with directions of any length: `trace` gets them with a length near 1, in the same order, and its
+/// distances are scaled back. `first` is the number of the first ray, for errors.
 ///
 /// # Errors
-/// Those of `trace`; [`crate::Error::Input`] for a distance that is no float, since the direction is so short.
+/// Those of `trace`; [`crate::Error::Input`] for a distance that is no float because the direction is too short.
 pub(crate) fn trace_units(
     rays: &[GivenRay],
     first: usize,
@@ -264,37 +185,21 @@ pub(crate) fn trace_units(
     Ok(hits)
 }
 
-/// Asked between frames; true ends the work with [`crate::Error::Interrupted`].
-pub type Interrupted<'a> = &'a dyn Fn() -> bool;
-
-/// An opened device.
+/// A device that can trace rays.
 pub trait Backend {
-    /// What it is.
+    /// The description for a run's provenance.
     fn info(&self) -> &DeviceInfo;
 
-    /// Uploads scene and structure and makes ready to send rays through it by `method`.
+    /// Uploads scene and structure, to be traced by `method`.
     ///
     /// # Errors
     /// [`crate::Error::Device`] if it does not fit the device's limits.
     fn prepare<'a>(
         &'a self,
         scene: &'a Scene,
-        structure: &'a Structure,
+        structure: &'a dyn Structure,
         method: Method,
     ) -> Result<Box<dyn Prepared + 'a>>;
-}
-
-/// The identity of a compiled kernel.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct KernelInfo {
-    /// First 16 digits of BLAKE3 of its text, without what only describes the machine (a software driver's threads): equal
-    /// for kernels that are equal.
-    pub hash: String,
-    /// Where it reads scene and structure from: `buffers` or `textures`.
-    pub fetch: String,
-    /// True if it is compiled with wgpu's bounds checks and loop bounds.
-    #[serde(default)]
-    pub checked: bool,
 }
 
 /// A scene and a structure on a device, with one traversal.
@@ -321,20 +226,20 @@ pub trait Prepared {
         interrupted: Interrupted,
     ) -> Result<Vec<FrameTime>>;
 
-    /// What the last frame of the last [`Prepared::time_path`] wrote, into a buffer that was filled with [`POISON`] before
-    /// the path: what was timed can so be checked.
+    /// The output of the last frame of the last [`Prepared::time_path`], in a buffer that was filled with [`POISON`]
+    /// before the path. It shows that what was timed was also right.
     fn timed(&mut self) -> Result<Timed>;
 
-    /// Traces given rays, in the coordinates of the scene as it lies in memory: the nearest hit, or with `any_hit`
-    /// whether anything is hit at all (`triangle` is 0 then, and `t` is 0).
+    /// Traces given rays, in the coordinates of the scene in memory: finds the nearest hit, or with `any_hit` whether
+    /// anything is hit (`triangle` and `t` are then 0).
     fn trace(&mut self, rays: &[GivenRay], any_hit: bool) -> Result<Vec<Hit>>;
 
-    /// What the timed kernel is; `None` where nothing is compiled for a device.
+    /// The identity of the timed kernel; `None` for the twins.
     fn kernel(&self, _config: Config) -> Result<Option<KernelInfo>> {
         Ok(None)
     }
 
     /// Bytes allocated on the device for geometry (vertices, materials, lights) and for the structure (nodes and
-    /// records), in this order.
+    /// triangle references), in this order.
     fn allocated(&self) -> (u64, u64);
 }

@@ -1,73 +1,119 @@
-//! Counting, or not: twins of `kernels/lib/count_on.wgsl` and `count_off.wgsl`.
+//! What traversals count. The list at the end of this file is the only one: the Rust types, and the WGSL that counting
+//! and timed kernels include, are made from it.
 
-use crate::workloads::trace::backend::Counters;
+use bytemuck::{Pod, Zeroable};
+use serde::{Deserialize, Serialize};
+use std::fmt::Write;
 
-/// What traversals report of one ray.
-pub trait Count: Copy + Default + Send + Sync {
-    /// A ray sets out.
-    fn ray(&mut self);
-    /// An inner node, or a grid cell.
-    fn inner(&mut self);
-    /// A leaf.
-    fn leaf(&mut self);
-    /// A ray/triangle test.
-    fn test(&mut self);
-    /// An entry taken from a stack.
-    fn pop(&mut self);
-    /// A restart.
-    fn restart(&mut self);
-    /// What was counted.
-    fn total(&self) -> Counters;
+/// Makes everything that has one item per counter. A counter is `event: field`; the traversal reports events.
+macro_rules! counters {
+    ($($(#[doc = $meaning:literal])+ $event:ident: $field:ident,)+) => {
+        /// What one ray type of one pixel cost, as the counting kernels write it.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+        #[repr(C)]
+        pub struct Counters {
+            $($(#[doc = $meaning])+ pub $field: u32,)+
+        }
+
+        /// Counters of one ray type, summed over a path.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+        pub struct CounterSums {
+            $($(#[doc = $meaning])+ pub $field: u64,)+
+        }
+
+        impl CounterSums {
+            /// Adds one pixel's counters.
+            pub fn add(&mut self, counters: &Counters) {
+                $(self.$field += u64::from(counters.$field);)+
+            }
+
+            /// Name and sum of each counter.
+            pub fn values(&self) -> Vec<(&'static str, u64)> {
+                vec![$((stringify!($field), self.$field)),+]
+            }
+
+            /// Sums by name; `None` where there is none of rays. A counter that is not there is 0.
+            pub fn read(get: impl Fn(&str) -> Option<u64>) -> Option<CounterSums> {
+                get("rays").map(|_| CounterSums { $($field: get(stringify!($field)).unwrap_or(0),)+ })
+            }
+        }
+
+        /// What traversals report of one ray.
+        pub trait Count: Copy + Default + Send + Sync {
+            $($(#[doc = $meaning])+ fn $event(&mut self);)+
+            /// What was counted.
+            fn total(&self) -> Counters;
+        }
+
+        impl Count for CountOff {
+            $(#[inline(always)] fn $event(&mut self) {})+
+            fn total(&self) -> Counters {
+                Counters::default()
+            }
+        }
+
+        impl Count for Counters {
+            $(#[inline(always)] fn $event(&mut self) { self.$field += 1; })+
+            fn total(&self) -> Counters {
+                *self
+            }
+        }
+
+        /// Event and field of each counter, in the order of [`Counters`].
+        const LIST: &[(&str, &str)] = &[$((stringify!($event), stringify!($field))),+];
+    };
 }
 
 /// Counts nothing and costs nothing: the timed twins.
 #[derive(Clone, Copy, Default)]
 pub struct CountOff;
 
-impl Count for CountOff {
-    #[inline(always)]
-    fn ray(&mut self) {}
-    #[inline(always)]
-    fn inner(&mut self) {}
-    #[inline(always)]
-    fn leaf(&mut self) {}
-    #[inline(always)]
-    fn test(&mut self) {}
-    #[inline(always)]
-    fn pop(&mut self) {}
-    #[inline(always)]
-    fn restart(&mut self) {}
-    fn total(&self) -> Counters {
-        Counters::default()
+impl Counters {
+    /// Traversal steps: nodes visited, or cells for a grid.
+    pub fn steps(&self) -> u32 {
+        self.inner + self.leaves
     }
 }
 
-impl Count for Counters {
-    #[inline(always)]
-    fn ray(&mut self) {
-        self.rays += 1;
+impl CounterSums {
+    /// Traversal steps: nodes visited, or cells for a grid.
+    pub fn steps(&self) -> u64 {
+        self.inner + self.leaves
     }
-    #[inline(always)]
-    fn inner(&mut self) {
-        self.inner += 1;
+}
+
+/// WGSL of the counting kernels, or of the timed ones, where every function is empty: `begin_ray(kind)`, and for each
+/// counter `count_EVENT()` and `add_FIELD(n)`.
+pub fn wgsl(counting: bool) -> String {
+    let mut text = String::new();
+    let mut line = |arguments: std::fmt::Arguments| writeln!(text, "{arguments}").expect("a String takes all text");
+    if counting {
+        line(format_args!("struct Counters {{"));
+        LIST.iter().for_each(|(_, field)| line(format_args!("    {field}: u32,")));
+        line(format_args!("}}\nvar<private> counters: array<Counters, 3>; // of this invocation, by ray type"));
+        line(format_args!("var<private> ray_kind: u32;"));
     }
-    #[inline(always)]
-    fn leaf(&mut self) {
-        self.leaves += 1;
+    let begin = if counting { "ray_kind = kind; count_ray();" } else { "" };
+    line(format_args!("fn begin_ray(kind: u32) {{ {begin} }}"));
+    for (event, field) in LIST {
+        let add = if counting { format!("counters[ray_kind].{field} += n;") } else { String::new() };
+        line(format_args!("fn add_{field}(n: u32) {{ {add} }}"));
+        line(format_args!("fn count_{event}() {{ add_{field}(1u); }}"));
     }
-    #[inline(always)]
-    fn test(&mut self) {
-        self.tests += 1;
-    }
-    #[inline(always)]
-    fn pop(&mut self) {
-        self.pops += 1;
-    }
-    #[inline(always)]
-    fn restart(&mut self) {
-        self.restarts += 1;
-    }
-    fn total(&self) -> Counters {
-        *self
-    }
+    text
+}
+
+counters! {
+    /// A ray of this type sets out.
+    ray: rays,
+    /// An inner node is visited, or a cell of a grid.
+    inner: inner,
+    /// A leaf is visited (not counted by grids).
+    leaf: leaves,
+    /// A ray/triangle test.
+    test: tests,
+    /// An entry is taken from a stack.
+    pop: pops,
+    /// A restart at (or below) the root.
+    restart: restarts,
 }

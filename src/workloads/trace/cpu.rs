@@ -1,147 +1,92 @@
-//! The twins as a device: [`Backend`] and [`Prepared`] over a pool of threads.
+//! Ray tracing by the twins on a pool of threads.
 
 use crate::camera::View;
+use crate::device::CpuDevice;
 use crate::error::{Error, Result};
 use crate::math::Hit;
 use crate::scene::Scene;
-use crate::threads;
 use crate::workloads::trace::backend::*;
-use crate::workloads::trace::bvh::stack::STACK_SIZE;
 use crate::workloads::trace::count::{Count, CountOff};
 use crate::workloads::trace::given::trace_group;
-use crate::workloads::trace::method::{Group, MAX_SHORT_STACK};
+use crate::workloads::trace::method::Group;
 use crate::workloads::trace::render::Frame;
-use crate::workloads::trace::traverse::{GROUP, Traverse, Triangles};
+use crate::workloads::trace::traverse::{GROUP, STACK_SIZE, Traverse, Triangles};
 use crate::workloads::trace::{Method, Structure, Traversal};
-use crate::workloads::trace::{brute, bvh, grid, kdtree};
 use bytemuck::Zeroable;
 use rayon::prelude::*;
-use std::collections::BTreeMap;
-use std::time::Instant;
 
-/// The CPU twins, on their own pool of threads.
-pub struct CpuBackend {
-    info: DeviceInfo,
-    pool: rayon::ThreadPool,
+/// A twin, ready to be run on a structure that it can walk.
+pub type Twin = for<'a> fn(TwinInput<'a>) -> Result<Box<dyn Prepared + 'a>>;
+
+/// What a twin is made of.
+#[derive(Clone, Copy)]
+pub struct TwinInput<'a> {
+    device: &'a CpuDevice,
+    scene: &'a Scene,
+    structure: &'a dyn Structure,
+    /// How rays are traced.
+    pub method: Method,
 }
 
-impl CpuBackend {
-    /// A pool of `threads`; 0 takes one per processor.
+impl<'a> TwinInput<'a> {
+    /// The structure.
     ///
     /// # Errors
-    /// Those of [`threads::pool`].
-    pub fn new(threads: usize) -> Result<CpuBackend> {
-        let pool = threads::pool(threads)?;
-        let info = DeviceInfo {
-            name: processor_name(),
-            device_type: DeviceType::CpuTwin,
-            backend: "cpu".into(),
-            driver: String::new(),
-            timestamp_period_ns: None,
-            checked: true,
-            features: Vec::new(),
-            limits: BTreeMap::new(),
-            threads: Some(pool.current_num_threads()),
-        };
-        Ok(CpuBackend { info, pool })
+    /// [`Error::Refused`] if it is of another type.
+    pub fn structure<S: Structure>(&self) -> Result<&'a S> {
+        self.structure.downcast_ref().ok_or_else(|| cannot_walk(self.method.traversal, self.structure))
+    }
+
+    /// Vertices and triangle references.
+    pub fn triangles(&self) -> Triangles<'a> {
+        let (vertices, triangle_refs) = (&self.scene.vertices, self.structure.triangle_refs());
+        Triangles { vertices, triangle_refs, test: self.method.intersect }
+    }
+
+    /// The traversal, ready for frames and rays.
+    pub fn with<T: Traverse + 'a>(self, traversal: T) -> Box<dyn Prepared + 'a> {
+        let TwinInput { device, scene, structure, method } = self;
+        let (triangles, lengths) = (self.triangles(), Lengths::new(scene.bounds()));
+        Box::new(CpuPrepared { device, scene, structure, triangles, method, traversal, lengths, timed: Vec::new() })
     }
 }
 
-/// The processor's name as the system gives it, or `CPU`.
-fn processor_name() -> String {
-    let Ok(mut system) = sysinfo::System::new() else {
-        return "CPU".into();
-    };
-    system.refresh_cpu_all();
-    match system.cpus().first().map(|cpu| cpu.brand().trim()) {
-        Some(name) if !name.is_empty() => name.into(),
-        _ => "CPU".into(),
-    }
+/// The refusal of a structure that a traversal is not made for.
+pub(super) fn cannot_walk(traversal: &Traversal, structure: &dyn Structure) -> Error {
+    Error::unsupported(format!("{} cannot walk a {}", traversal.kernel, structure.kind().name))
 }
 
-impl Backend for CpuBackend {
+impl Backend for CpuDevice {
     fn info(&self) -> &DeviceInfo {
-        &self.info
+        CpuDevice::info(self)
     }
 
     fn prepare<'a>(
         &'a self,
         scene: &'a Scene,
-        structure: &'a Structure,
+        structure: &'a dyn Structure,
         method: Method,
     ) -> Result<Box<dyn Prepared + 'a>> {
-        let triangles = |triangle_refs| Triangles { vertices: &scene.vertices, triangle_refs, test: method.intersect };
-        let check_depth = |depth: u32| match (depth as usize) + 1 < STACK_SIZE {
-            true => Ok(()),
-            false => {
-                Err(Error::Device(format!("the tree is {depth} levels deep, the twins' stack holds {STACK_SIZE}")))
-            }
-        };
-        if method.traversal.is_cooperative() && method.group.size() as usize > GROUP {
-            let Group { width, height } = method.group;
-            return Err(Error::Device(format!("a packet of {width}x{height} is larger than {GROUP} rays")));
+        let depth = structure.stack_depth();
+        if depth as usize + 1 >= STACK_SIZE {
+            let problem = format!("{depth} levels are more than the twins' stack of {STACK_SIZE} holds");
+            return Err(Error::too_large("the tree", problem, "set another max_leaf"));
         }
-        Ok(match (structure, method.traversal) {
-            (Structure::Brute(b), Traversal::Brute) => {
-                let triangles = triangles(&b.triangle_refs);
-                self.with((scene, structure, triangles), method, brute::scan::Brute { triangles })
-            }
-            (Structure::Grid(g), Traversal::Grid) => {
-                let triangles = triangles(&g.triangle_refs);
-                self.with((scene, structure, triangles), method, grid::dda::Grid::new(triangles, g))
-            }
-            (Structure::Grid(g), Traversal::GridCoop) => {
-                let triangles = triangles(&g.triangle_refs);
-                let grid = grid::dda::Grid::new(triangles, g);
-                self.with((scene, structure, triangles), method, grid::coop::GridCoop { grid })
-            }
-            (Structure::Grid(g), Traversal::GridPacket) => {
-                let triangles = triangles(&g.triangle_refs);
-                let grid = grid::dda::Grid::new(triangles, g);
-                self.with((scene, structure, triangles), method, grid::packet::GridPacket { grid })
-            }
-            (Structure::KdTree(tree), Traversal::KdTree(search)) => {
-                let triangles = triangles(&tree.triangle_refs);
-                if search.stack as usize <= kdtree::search::SMALL {
-                    let twin = kdtree::search::KdTree::<{ kdtree::search::SMALL }> { triangles, tree, search };
-                    self.with((scene, structure, triangles), method, twin)
-                } else {
-                    let twin = kdtree::search::KdTree::<{ MAX_SHORT_STACK as usize }> { triangles, tree, search };
-                    self.with((scene, structure, triangles), method, twin)
-                }
-            }
-            (Structure::Bvh(b), Traversal::Bvh(vote)) => {
-                check_depth(b.depth)?;
-                let triangles = triangles(&b.triangle_refs);
-                self.with((scene, structure, triangles), method, bvh::packet::Bvh::new(triangles, b, vote))
-            }
-            (Structure::Bvh(b), Traversal::BvhStack) => {
-                check_depth(b.depth)?;
-                let triangles = triangles(&b.triangle_refs);
-                self.with((scene, structure, triangles), method, bvh::stack::BvhStack::new(triangles, b))
-            }
-            _ => return Err(Error::Device(format!("{:?} cannot walk this structure", method.traversal))),
-        })
-    }
-}
-
-impl CpuBackend {
-    fn with<'a, T: Traverse + 'a>(
-        &'a self,
-        (scene, structure, triangles): (&'a Scene, &'a Structure, Triangles<'a>),
-        method: Method,
-        traversal: T,
-    ) -> Box<dyn Prepared + 'a> {
-        let lengths = Lengths::new(scene.bounds());
-        let (pool, timed) = (&self.pool, Vec::new());
-        Box::new(CpuPrepared { pool, scene, structure, triangles, method, traversal, lengths, timed })
+        if method.traversal.cooperative && method.group.size() as usize > GROUP {
+            let Group { width, height } = method.group;
+            return Err(Error::unsupported(format!("a packet of {width}x{height}, which is more than {GROUP} rays")));
+        }
+        match method.traversal.twin {
+            Some(twin) => twin(TwinInput { device: self, scene, structure, method }),
+            None => Err(Error::unsupported(format!("{} has no CPU twin", method.traversal.kernel))),
+        }
     }
 }
 
 struct CpuPrepared<'a, T> {
-    pool: &'a rayon::ThreadPool,
+    device: &'a CpuDevice,
     scene: &'a Scene,
-    structure: &'a Structure,
+    structure: &'a dyn Structure,
     triangles: Triangles<'a>,
     method: Method,
     traversal: T,
@@ -161,7 +106,7 @@ impl<'a, T: Traverse> CpuPrepared<'a, T> {
     ) {
         let width = frame.size.width;
         let strip = (width * frame.group.height) as usize;
-        self.pool.install(|| {
+        self.device.pool().install(|| {
             out.par_chunks_mut(strip).enumerate().for_each(|(index, pixels)| {
                 let top = tile.row + index as u32 * frame.group.height;
                 for column in (tile.column..tile.column + tile.columns).step_by(frame.group.width as usize) {
@@ -189,9 +134,6 @@ impl<'a, T: Traverse> CpuPrepared<'a, T> {
         }
     }
 }
-
-/// Pixels per band of the counting pass, about.
-const BAND_PIXELS: u32 = 262_144;
 
 impl<T: Traverse> Prepared for CpuPrepared<'_, T> {
     fn image(&mut self, config: Config, view: &View, size: Size) -> Result<Vec<Pixel>> {
@@ -228,17 +170,8 @@ impl<T: Traverse> Prepared for CpuPrepared<'_, T> {
         let mut pixels = std::mem::take(&mut self.timed);
         pixels.clear();
         pixels.resize(size.pixels(), Pixel { triangle: POISON, rgba: POISON });
-        let mut times = Vec::with_capacity(views.len());
-        let mut last = Instant::now();
-        for view in views {
-            if interrupted() {
-                return Err(Error::Interrupted);
-            }
-            self.timed_frame(config, view, size, &mut pixels);
-            let now = Instant::now();
-            times.push(FrameTime { device_ns: None, wall_ns: (now - last).as_nanos() as u64 });
-            last = now;
-        }
+        let render = |frame: usize| self.timed_frame(config, &views[frame], size, &mut pixels);
+        let times = self.device.run_frames(views.len(), render, interrupted)?;
         self.timed = pixels;
         Ok(times)
     }
@@ -250,7 +183,7 @@ impl<T: Traverse> Prepared for CpuPrepared<'_, T> {
     fn trace(&mut self, rays: &[GivenRay], any_hit: bool) -> Result<Vec<Hit>> {
         trace_units(rays, 0, |rays| {
             let mut hits = vec![Hit::NONE; rays.len()];
-            self.pool.install(|| {
+            self.device.pool().install(|| {
                 hits.par_chunks_mut(GROUP).zip(rays.par_chunks(GROUP)).for_each(|(hits, rays)| {
                     trace_group(&self.traversal, self.triangles, rays, any_hit, hits);
                 });

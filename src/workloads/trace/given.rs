@@ -21,8 +21,8 @@ pub fn trace_group<T: Traverse>(
     let mut counters = [CountOff; GROUP];
     hits.fill(Hit::NONE);
     if any_hit {
-        let blocked = traversal.any_hits(&rays, T_MAX, alive, &mut counters);
-        bits(blocked).for_each(|lane| hits[lane] = Hit { t: 0.0, triangle: 0 });
+        let occluded = traversal.any_hits(&rays, T_MAX, alive, &mut counters);
+        bits(occluded).for_each(|lane| hits[lane] = Hit { t: 0.0, triangle: 0 });
         return;
     }
     let triangle_refs = traversal.nearest_hits(&rays, alive, &mut counters);

@@ -1,8 +1,10 @@
 //! Ray configurations: which rays a frame casts.
 
+use super::backend::Size;
+use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
 
-/// Ray configuration (SPEC section 5).
+/// Ray configuration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Config {
     /// Primary rays, shaded.
@@ -13,7 +15,7 @@ pub enum Config {
     PSR,
 }
 
-/// Most reflections that a primary ray may have (SPEC section 5).
+/// Most reflections that a primary ray may have.
 pub const MAX_BOUNCES: u32 = 2;
 
 impl Config {
@@ -28,5 +30,47 @@ impl Config {
     /// Reflections followed.
     pub fn bounces(self) -> u32 {
         if self == Config::PSR { MAX_BOUNCES } else { 0 }
+    }
+
+    /// A ray configuration by its name, as it is written.
+    pub fn named(name: &str) -> Option<Config> {
+        Config::ALL.into_iter().find(|config| format!("{config:?}") == name)
+    }
+
+    /// Index of the ray type that this configuration adds to the one before it: of primary, shadow, reflected.
+    pub fn added_ray_type(self) -> usize {
+        Config::ALL.iter().position(|&config| config == self).unwrap_or_default()
+    }
+}
+
+/// Most pixels of an image on any device: a frame's pixels are also held in main memory.
+pub const MAX_PIXELS: u64 = 1 << 26;
+
+/// A ray configuration by name, in any case.
+///
+/// # Errors
+/// [`Error::Input`].
+pub fn parse_config(text: &str) -> Result<Config> {
+    let found = Config::named(&text.to_uppercase());
+    found.ok_or_else(|| Error::argument("--config", format!("unknown configuration {text:?}"), "give P, PS or PSR"))
+}
+
+/// `N` or `WxH`.
+///
+/// # Errors
+/// [`Error::Input`].
+pub fn parse_size(text: &str) -> Result<Size> {
+    let wrong =
+        |problem: String| Error::argument("--resolution", problem, "give N or WxH in pixels, as 512 or 640x480");
+    let (width, height) = text.split_once(['x', 'X']).unwrap_or((text, text));
+    match (width.trim().parse::<u32>(), height.trim().parse::<u32>()) {
+        (Ok(0), _) | (_, Ok(0)) => Err(wrong(format!("{text} has no pixels"))),
+        (Ok(width), Ok(height)) => {
+            if u64::from(width) * u64::from(height) > MAX_PIXELS {
+                return Err(wrong(format!("{text} has more than {MAX_PIXELS} pixels")));
+            }
+            Ok(Size { width, height })
+        }
+        _ => Err(wrong(format!("{text:?} is no image size"))),
     }
 }

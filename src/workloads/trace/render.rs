@@ -1,5 +1,5 @@
-//! One frame, work-group by work-group. Twin of `kernels/trace/render.wgsl`; what is a scalar in the kernel is an array over
-//! the 64 lanes here.
+//! One frame, work-group by work-group. Twin of `kernels/trace/render.wgsl`; what is a scalar in the kernel is an array
+//! over the 64 lanes here.
 
 use crate::camera::{PixelGrid, View};
 use crate::math::{MISS, Ray, T_MAX};
@@ -8,7 +8,7 @@ use crate::workloads::trace::Method;
 use crate::workloads::trace::backend::{Config, CountedPixel, GivenRay, Lengths, Pixel, Size};
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::method::{Group, Pattern, ShadowRays};
-use crate::workloads::trace::shade::{Surface, phong, reflected_ray, rgba8, surface_at, unit};
+use crate::workloads::trace::shade::{Surface, normalize3, phong, reflected_ray, rgba8, surface_at};
 use crate::workloads::trace::traverse::{GROUP, Lanes, Traverse, Triangles, bits};
 use glam::Vec3A;
 
@@ -39,13 +39,13 @@ pub struct Frame<'a> {
 /// The primary ray of a pixel (rows from the top), exactly as a frame casts it.
 pub fn primary_ray(method: Method, view: &View, size: Size, pixel: usize) -> GivenRay {
     let grid = view.camera.pixel_grid(size.width, size.height);
-    let point = seen_through(method, size, pixel as u32 % size.width, pixel as u32 / size.width);
+    let point = sample_position(method, size, pixel as u32 % size.width, pixel as u32 / size.width);
     GivenRay { origin: grid.origin, direction: direction_through(&grid, point).into() }
 }
 
-/// Where the ray of a pixel goes through the image, in pixels from its top left corner: its middle, or one of four points
-/// at a quarter and three quarters of the image's sides.
-fn seen_through(method: Method, size: Size, column: u32, row: u32) -> [f32; 2] {
+/// The position in the image, in pixels from its top left corner, that the ray of a pixel goes through: the middle of
+/// the pixel, or one of four points at a quarter and three quarters of the image's sides.
+fn sample_position(method: Method, size: Size, column: u32, row: u32) -> [f32; 2] {
     match method.pattern {
         Pattern::Image => [column as f32 + 0.5, row as f32 + 0.5],
         Pattern::Four => {
@@ -56,7 +56,7 @@ fn seen_through(method: Method, size: Size, column: u32, row: u32) -> [f32; 2] {
 }
 
 fn direction_through(grid: &PixelGrid, [x, y]: [f32; 2]) -> Vec3A {
-    unit(Vec3A::from(grid.corner) + Vec3A::from(grid.right) * x + Vec3A::from(grid.down) * y)
+    normalize3(Vec3A::from(grid.corner) + Vec3A::from(grid.right) * x + Vec3A::from(grid.down) * y)
 }
 
 /// Between light and point, of which one is at distance 0 and the other at distance 1.
@@ -87,13 +87,13 @@ impl<'a> Frame<'a> {
         lengths: Lengths,
     ) -> Self {
         let grid = view.camera.pixel_grid(size.width, size.height);
-        let group = if method.traversal.is_cooperative() { method.group } else { Group::SQUARE };
+        let group = if method.traversal.cooperative { method.group } else { Group::SQUARE };
         let places = std::array::from_fn(|lane| group.place(lane as u32));
         Frame { scene, triangles, config, size, group, places, method, grid, lights: &view.lights, lengths }
     }
 
     fn primary_ray(&self, column: u32, row: u32) -> Ray {
-        let point = seen_through(self.method, self.size, column, row);
+        let point = sample_position(self.method, self.size, column, row);
         Ray::new(self.grid.origin.into(), direction_through(&self.grid, point))
     }
 
@@ -129,7 +129,7 @@ impl<'a> Frame<'a> {
             bits(alive).for_each(|lane| counters[kind][lane].ray());
             let triangle_refs = traversal.nearest_hits(&rays, alive, &mut counters[kind]);
 
-            // Make it a surface; whatever is missed shows the background and is done
+            // Make it a surface; a ray that misses shows the background and is done
             let mut surfaces: Lanes<Option<Surface>> = [None; GROUP];
             for lane in bits(alive) {
                 if triangle_refs[lane] == MISS {

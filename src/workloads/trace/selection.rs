@@ -3,17 +3,19 @@
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::threads;
-use crate::workloads::trace::Structure;
+use crate::workloads::trace::algorithm::{Algorithm, Made};
 use crate::workloads::trace::intersect::TriangleTest;
 use crate::workloads::trace::method::{Fetch, Group, Method, Pattern, ShadowRays};
-use crate::workloads::trace::registry::{Made, OptionInfo, VariantInfo, variants};
+use crate::workloads::trace::options::{Axis, OptionInfo};
+use crate::workloads::trace::registry::algorithms;
+use crate::workloads::trace::structure::Structure;
+use std::sync::Arc;
 use std::time::Instant;
 
-/// A variant with its options, as `--structure` gives it: `name[:key=value,...]`.
+/// An algorithm with its options, as `--structure` gives it: `name[:key=value,...]`.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Selection {
-    /// Row in [`variants`].
-    variant: usize,
+    algorithm: &'static Algorithm,
     /// One value per option, in the table's order and spelled as the table would.
     values: Vec<String>,
 }
@@ -22,7 +24,7 @@ pub struct Selection {
 #[derive(Clone, Debug)]
 pub struct Built {
     /// The structure.
-    pub structure: Structure,
+    pub structure: Arc<dyn Structure>,
     /// Wall-clock time, in milliseconds, from the scene's triangles to the finished structure.
     pub build_ms: f64,
     /// Threads that the builder could use.
@@ -36,13 +38,13 @@ impl Selection {
     pub fn parse(text: &str) -> Result<Selection> {
         let place = || format!("--structure {text}");
         let (name, options) = text.split_once(':').unwrap_or((text, ""));
-        let Some(variant) = variants().iter().position(|v| v.name == name || (v.alias == name && !name.is_empty()))
-        else {
-            let names: Vec<&str> = variants().iter().map(|v| v.name).collect();
+        let is_called = |a: &&&Algorithm| a.name == name || (a.alias == name && !name.is_empty());
+        let Some(&algorithm) = algorithms().iter().find(is_called) else {
+            let names: Vec<&str> = algorithms().iter().map(|a| a.name).collect();
             let problem = format!("there is no structure '{name}'");
             return Err(Error::argument(place(), problem, format!("one of {}", names.join(", "))));
         };
-        let table: Vec<&OptionInfo> = variants()[variant].options().collect();
+        let table: Vec<&OptionInfo> = algorithm.options().collect();
         let mut values: Vec<String> = table.iter().map(|o| o.default.to_owned()).collect();
         let mut set = vec![false; table.len()];
         for option in options.split(',').filter(|o| !o.is_empty()) {
@@ -61,34 +63,97 @@ impl Selection {
                 .parse(value)
                 .map_err(|hint| Error::argument(place(), format!("'{value}' is no value for {key}"), hint))?;
         }
-        Ok(Selection { variant, values })
+        let selection = Selection { algorithm, values };
+        for (option, _) in table.iter().zip(&set).filter(|(_, set)| **set) {
+            if let Some(why) = option.idle.and_then(|idle| idle(&selection)) {
+                let problem = format!("{} has no effect: {why}", option.key);
+                return Err(Error::argument(place(), problem, format!("leave {} out", option.key)));
+            }
+        }
+        Ok(selection)
     }
 
-    /// The variant's row in the table.
-    pub fn info(&self) -> &'static VariantInfo {
-        &variants()[self.variant]
+    /// Reads one element of a list of `--structure`: `all` is every algorithm but brute force.
+    pub fn parse_all(text: &str) -> Result<Vec<Selection>> {
+        if text != "all" {
+            return Ok(vec![Selection::parse(text)?]);
+        }
+        let names = algorithms().iter().map(|a| a.name).filter(|&name| name != "brute");
+        names.map(Selection::parse).collect()
     }
 
-    /// The variant's name.
+    /// What is registered under its name.
+    pub fn info(&self) -> &'static Algorithm {
+        self.algorithm
+    }
+
+    /// The algorithm's name.
     pub fn name(&self) -> &'static str {
-        self.info().name
+        self.algorithm.name
     }
 
     /// The options that differ from their defaults, `key=value,...`, or `default`.
     pub fn variant(&self) -> String {
+        let set = self.changed(|_| true);
+        if set.is_empty() { "default".to_owned() } else { set }
+    }
+
+    /// Options of the structure that differ from their defaults, `key=value,...`; empty if none does.
+    pub fn build_options(&self) -> String {
+        self.changed(|axis| axis == Axis::Build)
+    }
+
+    /// The same for options of the traversal.
+    pub fn traversal_options(&self) -> String {
+        self.changed(|axis| axis == Axis::Traversal)
+    }
+
+    /// The same for options that decide which rays there are and what they hit.
+    pub fn ray_options(&self) -> String {
+        self.changed(|axis| axis == Axis::Rays)
+    }
+
+    /// The same for options of the device, which change times only.
+    pub fn device_options(&self) -> String {
+        self.changed(|axis| axis == Axis::Device)
+    }
+
+    fn changed(&self, of: impl Fn(Axis) -> bool) -> String {
         let options = self.info().options().zip(&self.values);
-        let set: Vec<String> =
-            options.filter(|(o, v)| o.default != *v).map(|(o, v)| format!("{}={v}", o.key)).collect();
-        if set.is_empty() { "default".to_owned() } else { set.join(",") }
+        let changed = options.filter(|(o, v)| o.default != *v && of(o.axis));
+        changed.map(|(o, v)| format!("{}={v}", o.key)).collect::<Vec<_>>().join(",")
+    }
+
+    /// Name and options as they are written, `name[:key=value,...]`.
+    pub fn full_name(&self) -> String {
+        match self.variant().as_str() {
+            "default" => self.name().to_owned(),
+            variant => format!("{}:{variant}", self.name()),
+        }
+    }
+
+    /// The options that differ from their defaults, by the axis of a row that holds them.
+    pub fn option_axes(&self) -> [(&'static str, String); 4] {
+        [
+            (Axis::Build.name(), self.build_options()),
+            (Axis::Traversal.name(), self.traversal_options()),
+            (Axis::Rays.name(), self.ray_options()),
+            (Axis::Device.name(), self.device_options()),
+        ]
     }
 
     /// How rays go through it.
     pub fn method(&self) -> Method {
-        let shape = if self.has("packet") { self.value("packet") } else { self.value("group") };
-        let (width, height) = shape.split_once('x').expect("the table lists shapes");
-        let side = |text: &str| text.parse().expect("the table lists shapes");
+        let shape = self.find("packet").or(self.find("group"));
+        let group = shape.map_or(Group::SQUARE, |shape| {
+            let (width, height) = shape.split_once('x').expect("the table lists shapes");
+            let side = |text: &str| text.parse().expect("the table lists shapes");
+            Group { width: side(width), height: side(height) }
+        });
+        let traversal = self.info().traversal;
         Method {
-            traversal: (self.info().traversal)(self),
+            traversal,
+            parameters: (traversal.parameters)(self),
             shadows: match self.value("shadows") {
                 "to-light" => ShadowRays::ToLight,
                 _ => ShadowRays::FromLight,
@@ -98,7 +163,7 @@ impl Selection {
                 "moller-trumbore" => TriangleTest::MollerTrumbore,
                 _ => TriangleTest::Watertight,
             },
-            group: Group { width: side(width), height: side(height) },
+            group,
             tiles: self.count("tiles").unwrap_or(1),
             checked: self.value("checks") == "on",
             fetch: match self.value("fetch") {
@@ -111,27 +176,28 @@ impl Selection {
 
     /// Equal for selections whose built structures are the same.
     pub fn build_key(&self) -> String {
-        format!("{}:{}", self.info().builder, self.values[..self.info().build_options.len()].join(","))
+        let builder = self.info().builder;
+        format!("{}:{}", builder.name, self.values[..builder.options.len()].join(","))
     }
 
     /// Builds the structure on `threads` threads (0: as many as there are).
     pub fn build(&self, scene: &Scene, threads: usize) -> Result<Built> {
-        let pool = threads::pool(if self.info().parallel { threads } else { 1 })?;
+        let pool = threads::pool(if self.info().builder.parallel { threads } else { 1 })?;
         pool.install(|| {
             let start = Instant::now();
-            let Made { structure, note } = (self.info().build)(self, scene)?;
+            let Made { structure, note } = (self.info().builder.build)(self, scene)?;
             let build_ms = start.elapsed().as_secs_f64() * 1e3;
             Ok(Built { structure, build_ms, build_threads: rayon::current_num_threads(), note })
         })
     }
 
-    fn has(&self, key: &str) -> bool {
-        self.info().options().any(|o| o.key == key)
+    fn find(&self, key: &str) -> Option<&str> {
+        let index = self.info().options().position(|o| o.key == key)?;
+        Some(&self.values[index])
     }
 
     pub(crate) fn value(&self, key: &str) -> &str {
-        let index = self.info().options().position(|o| o.key == key).expect("an option of the table");
-        &self.values[index]
+        self.find(key).expect("an option of the table")
     }
 
     /// `None` for `auto`.

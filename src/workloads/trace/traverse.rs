@@ -1,5 +1,5 @@
-//! Traversals: the twins of the kernels in `kernels/trace/STRUCTURE/`, one file each. All have the same two functions, nearest hit and any
-//! hit; [`Traverse`] is their form for a whole work-group of 64 rays, which the packet traversal needs.
+//! Traversals: the twins of the kernels in `kernels/trace/STRUCTURE/`, one file each. Each has one loop for nearest hit
+//! and any hit; [`Traverse`] is its form for a whole work-group of 64 rays, which packets need.
 
 use crate::math::{MISS, Ray, T_MAX, Vertex};
 use crate::workloads::trace::TriangleRef;
@@ -10,41 +10,61 @@ use glam::Vec3A;
 /// Rays of a work-group.
 pub const GROUP: usize = 64;
 
+/// Entries of a full stack, with the one at the bottom; deeper trees are refused when they are prepared.
+pub const STACK_SIZE: usize = 96;
+
 /// One value per ray of a work-group.
 pub type Lanes<T> = [T; GROUP];
 
 /// A traversal of a work-group's rays. Bit `i` of `alive` says whether ray `i` takes part.
 pub trait Traverse: Sync {
+    /// For each ray the triangle reference of its nearest hit before `limit`, with `ANY` of some hit there, or
+    /// [`MISS`].
+    fn traverse<const ANY: bool, C: Count>(
+        &self,
+        rays: &Lanes<Ray>,
+        limit: f32,
+        alive: u64,
+        counters: &mut Lanes<C>,
+    ) -> Lanes<u32>;
+
     /// The triangle reference of each ray's nearest hit, or [`MISS`].
-    fn nearest_hits<C: Count>(&self, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<C>) -> Lanes<u32>;
+    fn nearest_hits<C: Count>(&self, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<C>) -> Lanes<u32> {
+        self.traverse::<false, C>(rays, T_MAX, alive, counters)
+    }
 
     /// One bit for each ray that hits anything at a distance below `limit`.
-    fn any_hits<C: Count>(&self, rays: &Lanes<Ray>, limit: f32, alive: u64, counters: &mut Lanes<C>) -> u64;
+    fn any_hits<C: Count>(&self, rays: &Lanes<Ray>, limit: f32, alive: u64, counters: &mut Lanes<C>) -> u64 {
+        let found = self.traverse::<true, C>(rays, limit, alive, counters);
+        set_of(bits(alive).filter(|&lane| found[lane] != MISS))
+    }
 }
 
 /// A traversal whose rays do not wait for each other (`kernels/lib/independent.wgsl`).
 pub trait TraverseIndependent: Sync {
-    /// The triangle reference of the nearest hit, or [`MISS`].
-    fn nearest_hit<C: Count>(&self, ray: &Ray, count: &mut C) -> u32;
-
-    /// True if anything is hit at a distance below `limit`.
-    fn any_hit<C: Count>(&self, ray: &Ray, limit: f32, count: &mut C) -> bool;
+    /// The triangle reference of the nearest hit before `limit`, with `ANY` of some hit there, or [`MISS`].
+    fn traverse<const ANY: bool, C: Count>(&self, ray: &Ray, limit: f32, count: &mut C) -> u32;
 }
 
 impl<T: TraverseIndependent> Traverse for T {
-    fn nearest_hits<C: Count>(&self, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<C>) -> Lanes<u32> {
+    fn traverse<const ANY: bool, C: Count>(
+        &self,
+        rays: &Lanes<Ray>,
+        limit: f32,
+        alive: u64,
+        counters: &mut Lanes<C>,
+    ) -> Lanes<u32> {
         let mut found = [MISS; GROUP];
         for lane in bits(alive) {
-            found[lane] = self.nearest_hit(&rays[lane], &mut counters[lane]);
+            found[lane] = TraverseIndependent::traverse::<ANY, C>(self, &rays[lane], limit, &mut counters[lane]);
         }
         found
     }
+}
 
-    fn any_hits<C: Count>(&self, rays: &Lanes<Ray>, limit: f32, alive: u64, counters: &mut Lanes<C>) -> u64 {
-        bits(alive)
-            .filter(|&lane| self.any_hit(&rays[lane], limit, &mut counters[lane]))
-            .fold(0, |set, lane| set | 1 << lane)
-    }
+/// The bits of these indices.
+pub fn set_of(lanes: impl Iterator<Item = usize>) -> u64 {
+    lanes.fold(0, |set, lane| set | 1 << lane)
 }
 
 /// The indices of the bits that are set, in ascending order.
@@ -67,20 +87,24 @@ pub struct Triangles<'a> {
     pub test: TriangleTest,
 }
 
-/// The nearest hit so far. Of equal distances the lower triangle index wins, so that the order of tests is no matter.
+/// The nearest hit so far. Of equal distances the lower triangle index wins, so that the order of tests does not
+/// matter.
 #[derive(Clone, Copy)]
 pub struct Best {
-    /// Distance.
+    /// Its distance; the limit of the search as long as nothing is hit.
     pub t: f32,
-    /// Triangle in the scene.
+    /// Its triangle in the scene; 0 as long as nothing is hit, since no index is lower: nothing at the limit is a hit.
     pub triangle: u32,
-    /// TriangleRef in the structure.
+    /// Its triangle reference in the structure, or [`MISS`].
     pub triangle_ref: u32,
 }
 
 impl Best {
-    /// Nothing yet.
-    pub const NONE: Best = Best { t: T_MAX, triangle: MISS, triangle_ref: MISS };
+    /// The begin of a search for hits before `limit`.
+    #[inline(always)]
+    pub fn before(limit: f32) -> Best {
+        Best { t: limit, triangle: 0, triangle_ref: MISS }
+    }
 }
 
 impl Triangles<'_> {
@@ -89,7 +113,7 @@ impl Triangles<'_> {
         triangle_ref.vertices.map(|v| self.vertices[v as usize].position_a())
     }
 
-    /// Tests one triangle reference.
+    /// Tests one triangle.
     #[inline(always)]
     pub fn hit(&self, ray: &Ray, triangle_ref: &TriangleRef, limit: f32) -> Option<TriangleHit> {
         self.test.intersect(ray, self.corners(triangle_ref), limit)
@@ -101,32 +125,28 @@ impl Triangles<'_> {
         self.test.surface(ray, self.corners(triangle_ref))
     }
 
-    /// Tests the triangle references of a leaf or cell and keeps the nearest hit.
+    /// Tests the triangles of a leaf or cell for the nearest hit; with `ANY`, only up to the first one that is hit.
+    /// True if that ends the search.
     #[inline(always)]
-    pub fn test_triangles<C: Count>(&self, ray: &Ray, first: u32, count: u32, best: &mut Best, counted: &mut C) {
-        for (triangle_ref, index) in self.triangle_refs[first as usize..][..count as usize].iter().zip(first..) {
-            counted.test();
-            if let Some(hit) = self.hit(ray, triangle_ref, best.t)
-                && (hit.t < best.t || triangle_ref.triangle < best.triangle)
-            {
-                *best = Best { t: hit.t, triangle: triangle_ref.triangle, triangle_ref: index };
-            }
-        }
-    }
-
-    /// True if one of the triangle references is hit at a distance below `limit`.
-    #[inline(always)]
-    pub fn any_triangle_occludes<C: Count>(
+    pub fn test<const ANY: bool, C: Count>(
         &self,
         ray: &Ray,
         first: u32,
         count: u32,
-        limit: f32,
+        best: &mut Best,
         counted: &mut C,
     ) -> bool {
-        self.triangle_refs[first as usize..][..count as usize].iter().any(|triangle_ref| {
+        for (triangle_ref, index) in self.triangle_refs[first as usize..][..count as usize].iter().zip(first..) {
             counted.test();
-            self.hit(ray, triangle_ref, limit).is_some_and(|hit| hit.t < limit)
-        })
+            if let Some(hit) = self.hit(ray, triangle_ref, best.t)
+                && (hit.t < best.t || (!ANY && triangle_ref.triangle < best.triangle))
+            {
+                *best = Best { t: hit.t, triangle: triangle_ref.triangle, triangle_ref: index };
+                if ANY {
+                    return true;
+                }
+            }
+        }
+        false
     }
 }

@@ -1,11 +1,12 @@
 //! Validation notices every kind of damage: each check of it is fed something wrong here.
 
-use super::{build, scenes};
+use super::{build, build_as, scenes};
 use rtbench::scene::Scene;
+use rtbench::workloads::trace::Structure;
+use rtbench::workloads::trace::brute::Brute;
 use rtbench::workloads::trace::bvh::{Bvh, BvhNode};
 use rtbench::workloads::trace::grid::Grid;
 use rtbench::workloads::trace::kdtree::{KdNode, KdTree};
-use rtbench::workloads::trace::{Brute, Structure};
 
 fn scene() -> Scene {
     scenes::random("good", 400, 1.0, 0.1, 9)
@@ -15,13 +16,13 @@ fn scene() -> Scene {
 type Damage<'a, T> = (&'a str, &'a str, &'a dyn Fn(&mut T));
 
 /// Breaks a good structure and checks that validation says so, in these words.
-fn assert_noticed<T: Clone>(good: &T, wrap: fn(T) -> Structure, damages: &[Damage<T>]) {
+fn assert_noticed<T: Structure + Clone>(good: &T, damages: &[Damage<T>]) {
     let scene = scene();
-    wrap(good.clone()).validate(&scene).expect("good before it is broken");
+    good.validate(&scene).expect("good before it is broken");
     for (damage, words, break_it) in damages {
         let mut broken = good.clone();
         break_it(&mut broken);
-        match wrap(broken).validate(&scene) {
+        match broken.validate(&scene) {
             Ok(()) => panic!("{damage} was not noticed"),
             Err(why) => assert!(why.contains(words), "{damage}: '{why}' does not say '{words}'"),
         }
@@ -39,7 +40,7 @@ fn inner_of(bvh: &Bvh) -> usize {
 
 #[test]
 fn in_a_bvh() {
-    let Structure::Bvh(good) = build("bvh", &scene(), 1) else { unreachable!() };
+    let good: Bvh = build_as("bvh", &scene());
     let (leaf, inner) = (leaf_of(&good), inner_of(&good));
     let other = good.nodes.iter().rposition(|n| n.count > 1).unwrap();
     let damages: &[Damage<Bvh>] = &[
@@ -79,12 +80,12 @@ fn in_a_bvh() {
         ("no nodes", "even number", &|b| b.nodes.clear()),
         ("no dummy sibling", "no dummy", &|b| b.nodes[1] = b.nodes[0]),
     ];
-    assert_noticed(&good, Structure::Bvh, damages);
+    assert_noticed(&good, damages);
 }
 
 #[test]
 fn in_a_kdtree() {
-    let Structure::KdTree(good) = build("kdtree", &scene(), 1) else { unreachable!() };
+    let good: KdTree = build_as("kdtree", &scene());
     let inner = 1 + good.nodes[1..].iter().position(|n| !n.is_leaf()).unwrap();
     let leaf = good.nodes.iter().position(|n| n.is_leaf() && n.count() > 1).unwrap();
     let first = good.nodes[leaf].first() as usize;
@@ -130,12 +131,12 @@ fn in_a_kdtree() {
         ("wrong depth", "depth is", &|t| t.depth -= 1),
         ("wrong bounds", "bounds", &|t| t.bounds.min.y -= 1.0),
     ];
-    assert_noticed(&good, Structure::KdTree, damages);
+    assert_noticed(&good, damages);
 }
 
 #[test]
 fn in_a_grid() {
-    let Structure::Grid(good) = build("grid", &scene(), 1) else { unreachable!() };
+    let good: Grid = build_as("grid", &scene());
     let full = good.cells.iter().position(|c| c.count > 1).unwrap();
     let empty = good.cells.iter().position(|c| c.count == 0).unwrap();
     let first = good.cells[full].first as usize;
@@ -157,7 +158,8 @@ fn in_a_grid() {
         ("not ascending", "ascending", &|g| g.triangle_refs.swap(first, first + 1)),
         ("doubled triangle reference", "ascending", &|g| g.triangle_refs[first] = g.triangle_refs[first + 1]),
         ("triangle reference in another cell", "", &|g| {
-            // Moves the border between two neighbouring cells: all in order, but one triangle reference is in the wrong cell.
+            // Moves the border between two neighbouring cells: all in order, but one triangle reference is in the wrong
+            // cell.
             let next = (full + 1..g.cells.len()).find(|&c| c != full).unwrap();
             g.cells[full].count -= 1;
             g.cells[next].first -= 1;
@@ -172,12 +174,12 @@ fn in_a_grid() {
         ("wrong vertices", "has vertices", &|g| g.triangle_refs[3].vertices.swap(1, 2)),
         ("wrong bounds", "bounds", &|g| g.bounds.max.z += 1.0),
     ];
-    assert_noticed(&good, Structure::Grid, damages);
+    assert_noticed(&good, damages);
 }
 
 #[test]
 fn in_a_list() {
-    let Structure::Brute(good) = build("brute", &scene(), 1) else { unreachable!() };
+    let good: Brute = build_as("brute", &scene());
     let damages: &[Damage<Brute>] = &[
         ("lost", "not all", &|b| {
             b.triangle_refs.pop();
@@ -186,7 +188,7 @@ fn in_a_list() {
         ("doubled", "not all", &|b| b.triangle_refs.push(b.triangle_refs[0])),
         ("wrong bounds", "bounds", &|b| b.bounds.max.z = f32::NAN),
     ];
-    assert_noticed(&good, Structure::Brute, damages);
+    assert_noticed(&good, damages);
 }
 
 #[test]

@@ -1,5 +1,5 @@
-//! Inputs that make a builder's work grow faster than its triangles. Nothing here looks at a clock: what bounds the work is
-//! counted, or said in the note.
+//! Inputs that make a builder's work grow faster than its triangles. Nothing here looks at a clock: what bounds the
+//! work is counted, or said in the note.
 
 use super::scenes::{numbers, soup};
 use super::{assert_valid, build, bytes};

@@ -2,8 +2,8 @@
 
 use super::{SELECTIONS, scenes};
 use rtbench::Error;
-use rtbench::workloads::trace::method::{Group, KdSearch, Vote};
-use rtbench::workloads::trace::{Selection, Traversal, variants};
+use rtbench::workloads::trace::method::Group;
+use rtbench::workloads::trace::{Selection, algorithms, bvh, grid, kdtree};
 
 fn selection(text: &str) -> Selection {
     Selection::parse(text).unwrap()
@@ -11,25 +11,37 @@ fn selection(text: &str) -> Selection {
 
 #[test]
 fn names_and_traversals() {
-    let names: Vec<&str> = variants().iter().map(|v| v.name).collect();
-    assert_eq!(names, ["grid", "kdtree", "bvh", "bvh-stack", "ploc-stack", "grid-coop", "grid-packet", "brute"]);
-    let traversal = |text| selection(text).method().traversal;
-    assert_eq!(traversal("bvh"), Traversal::Bvh(Vote::Corrected));
-    assert_eq!(traversal("bvh:vote=original"), Traversal::Bvh(Vote::Original));
-    assert_eq!(traversal("bvh-stack"), Traversal::BvhStack);
-    assert_eq!(traversal("ploc-stack"), Traversal::BvhStack);
-    assert_eq!(traversal("kdtree"), Traversal::KdTree(KdSearch::THESIS));
-    let search = |stack, pushdown| Traversal::KdTree(KdSearch { stack, pushdown, private: false });
-    assert_eq!(traversal("kdtree:search=restart"), search(0, false));
-    assert_eq!(traversal("kdtree:search=pushdown"), search(0, true));
-    assert_eq!(traversal("kdtree:stack=32"), search(32, true));
-    assert_eq!(selection("bvh:packet=8x4").method().group, Group { width: 8, height: 4 });
-    assert_eq!(selection("grid").method(), Traversal::Grid.into());
+    let names: Vec<&str> = algorithms().iter().map(|v| v.name).collect();
+    let order = ["grid", "kdtree", "bvh", "bvh-stack", "ploc-stack", "grid-coop", "grid-packet", "brute"];
+    let known: Vec<&str> = names.iter().copied().filter(|name| order.contains(name)).collect();
+    assert_eq!(known, order);
+    let aliases = algorithms().iter().map(|a| a.alias).filter(|alias| !alias.is_empty());
+    let all: Vec<&str> = names.iter().copied().chain(aliases).collect();
+    assert!(all.iter().all(|name| all.iter().filter(|other| other == &name).count() == 1), "{all:?}");
+    let method = |text| selection(text).method();
+    assert_eq!(method("bvh").traversal, &bvh::packet::SHARED_STACK);
+    assert!(!method("bvh").parameters.flag("ORIGINAL_VOTE"));
+    assert!(method("bvh:vote=original").parameters.flag("ORIGINAL_VOTE"));
+    assert_eq!(method("bvh-stack").traversal, &bvh::stack::STACK);
+    assert_eq!(method("ploc-stack").traversal, &bvh::stack::STACK);
+    assert_eq!(method("kdtree").traversal, &kdtree::search::SEARCH);
+    let search = |text| {
+        let parameters = method(text).parameters;
+        (parameters.word("SHORT_STACK"), parameters.flag("PUSHDOWN"), parameters.flag("PRIVATE_STACK"))
+    };
+    assert_eq!(search("kdtree"), (4, true, false));
+    assert_eq!(search("kdtree:search=restart"), (0, false, false));
+    assert_eq!(search("kdtree:search=pushdown"), (0, true, false));
+    assert_eq!(search("kdtree:stack=32"), (32, true, false));
+    assert_eq!(search("kdtree:memory=private"), (4, true, true));
+    assert_eq!(method("bvh:packet=8x4").group, Group { width: 8, height: 4 });
+    assert_eq!(method("grid"), method("bvh-stack").by(&grid::dda::DDA));
+    assert_eq!(method("grid").group, Group::SQUARE);
 }
 
 #[test]
 fn every_default_in_the_table_is_accepted_and_canonical() {
-    for variant in variants() {
+    for variant in algorithms() {
         assert!(!variant.summary.is_empty());
         for option in variant.options() {
             let given = selection(&format!("{}:{}={}", variant.name, option.key, option.default));
@@ -50,6 +62,41 @@ fn variants_are_canonical() {
         let one = selection(text);
         let again = format!("{}:{}", one.name(), one.variant()).replace(":default", "");
         assert_eq!(one, selection(&again));
+    }
+}
+
+/// The four axes apart; the variant lists all in the table's order.
+#[test]
+fn options_are_four_axes() {
+    let s = selection("kdtree:fetch=buffers,kt=2,tiles=3,shadows=to-light,stack=8,bins=16,group=4x4");
+    assert_eq!(s.build_options(), "bins=16,kt=2");
+    assert_eq!(s.traversal_options(), "stack=8");
+    assert_eq!(s.ray_options(), "shadows=to-light");
+    assert_eq!(s.device_options(), "group=4x4,tiles=3,fetch=buffers");
+    assert_eq!(s.variant(), "bins=16,kt=2,stack=8,group=4x4,shadows=to-light,tiles=3,fetch=buffers");
+    assert_eq!(selection("bvh:packet=4x4").traversal_options(), "packet=4x4");
+    let plain = selection("brute");
+    let axes = [plain.build_options(), plain.traversal_options(), plain.ray_options(), plain.device_options()];
+    assert!(axes.iter().all(String::is_empty));
+}
+
+#[test]
+fn all_is_every_algorithm_but_brute_force() {
+    let names = |text| Selection::parse_all(text).unwrap().iter().map(|s| s.name()).collect::<Vec<_>>();
+    let expected: Vec<&str> = algorithms().iter().map(|a| a.name).filter(|name| *name != "brute").collect();
+    assert_eq!(names("all"), expected);
+    assert_eq!(expected.len() + 1, algorithms().len());
+    assert_eq!(names("kdtree:stack=8"), ["kdtree"]);
+    assert!(Selection::parse_all("all:tiles=2").is_err());
+}
+
+#[test]
+fn an_option_without_effect_is_refused() {
+    for text in ["kdtree:search=restart,stack=8", "kdtree:memory=private,search=pushdown"] {
+        let error = Selection::parse(text).expect_err(text);
+        assert!(matches!(error, Error::Input(_)) && error.exit_code() == 2);
+        let line = error.to_string();
+        assert!(line.contains("has no effect: search=") && line.contains("leave"), "{line}");
     }
 }
 

@@ -1,18 +1,18 @@
-//! BART and NFF: what each entity makes, on small files; the real scenes against what is known of them.
+//! Tests of BART and NFF: each entity, in small files; the real scenes, compared with published values.
 
 use super::{Files, real_scenes};
 use glam::Vec3;
 use rtbench::scene::{self, Pose, Scene};
 use rtbench::workloads::trace::Selection;
 
-/// Loads a file of this text.
+/// Loads a file with this text.
 fn aff(text: &str) -> Scene {
     Files::new(&[("main.aff", text)]).load("main.aff").unwrap_or_else(|error| panic!("{text}: {error}"))
 }
 
 const TRIANGLE: &str = "p 3 0 0 0 1 0 0 0 1 0\n";
 
-/// The middle of the scene's bounds, where one triangle with corners 0, x, y lies.
+/// The position of the corner 0 of a triangle with corners 0, x, y.
 fn corner(scene: &Scene) -> Vec3 {
     scene.vertices[scene.triangles[0].vertices[0] as usize].position
 }
@@ -59,11 +59,11 @@ fn materials_lights_and_background_are_mapped_as_documented() {
     assert_eq!((fm.ambient, fm.diffuse, fm.specular), (Vec3::splat(0.2), Vec3::new(0.2, 0.3, 0.4), Vec3::X));
     assert!((fm.reflectivity - 0.2126).abs() < 1e-6 && fm.exponent == 50.0);
     assert_eq!(scene.triangles.iter().map(|t| t.material).collect::<Vec<_>>(), [0, 1, 0]);
-    assert_eq!(scene.warnings, ["texture passed over", "transparent material: shown opaque"]);
+    assert_eq!(scene.warnings, ["texture ignored", "transparent material: rendered opaque"]);
 }
 
 #[test]
-fn static_transforms_scale_turn_move_and_nest() {
+fn static_transforms_scale_rotate_translate_and_nest() {
     let inner = format!("xs 2 2 2 0 0 1 90 1 0 0 {{ {TRIANGLE} }}");
     let scene = aff(&format!("xs 1 1 1 0 1 0 0 0 0 5{{ {inner} }} {TRIANGLE}"));
     let at = |i: usize| scene.vertices[i].position;
@@ -73,7 +73,7 @@ fn static_transforms_scale_turn_move_and_nest() {
         assert!(at(i).abs_diff_eq(*expected, 1e-6), "{i}: {}", at(i));
     }
     assert_eq!(at(4), Vec3::X, "after the braces");
-    // A mirror keeps the outside outside
+    // A mirrored surface still faces outwards.
     let scene = aff(&format!("xs -1 1 .5 0 0 1 0 0 0 0 {{ {TRIANGLE} }}"));
     assert!(scene.vertices.iter().all(|v| v.normal == Vec3::Z), "{:?}", scene.vertices);
     let [a, b, c] = scene.corners(0);
@@ -83,10 +83,10 @@ fn static_transforms_scale_turn_move_and_nest() {
 const KEYS: &str = "k slide { transl 4 0 0 0 0 0 0 0 1 1 0 0 0 0 0 2 2 0 0 0 0 0 3 3 0 0 0 0 0 }\n";
 
 #[test]
-fn animated_transforms_find_their_keys_behind_them_and_are_frozen_at_a_time() {
+fn animated_transforms_are_evaluated_at_a_time_and_keys_may_follow_them() {
     let text = format!("x slide {{ {TRIANGLE} }}\n{KEYS}");
     let files = Files::new(&[("main.aff", &text), ("animated.aff", &format!("{text}a 1.25 2 10"))]);
-    for (what, x) in [
+    for (spec, x) in [
         ("main.aff", 1.0),
         ("main.aff:time=1.5", 1.5),
         ("main.aff:time=-7", 1.0),
@@ -94,9 +94,9 @@ fn animated_transforms_find_their_keys_behind_them_and_are_frozen_at_a_time() {
         ("animated.aff", 1.25),
         ("animated.aff:time=1.75", 1.75),
     ] {
-        assert_eq!(corner(&files.load(what).unwrap()).x, x, "{what}");
+        assert_eq!(corner(&files.load(spec).unwrap()).x, x, "{spec}");
     }
-    // Scale first, then rotation, then translation
+    // Scaling is applied first, then rotation, then translation.
     let turn = "rot 4 0 0 0 1 90 0 0 0 1 0 0 1 90 0 0 0 2 0 0 1 90 0 0 0 3 0 0 1 90 0 0 0";
     let scale = "scale 4 0 3 1 1 0 0 0 1 3 1 1 0 0 0 2 3 1 1 0 0 0 3 3 1 1 0 0 0 }";
     let scene = aff(&format!("x slide {{ p 3 1 0 0 1 1 0 1 0 1 }} {} {turn} {scale}", KEYS.replace('}', "")));
@@ -104,7 +104,7 @@ fn animated_transforms_find_their_keys_behind_them_and_are_frozen_at_a_time() {
 }
 
 #[test]
-fn what_is_not_visible_is_left_out_and_lights_move() {
+fn invisible_objects_are_omitted_and_lights_are_animated() {
     let text = "x ghost { p 3 9 0 0 9 1 0 9 0 1 l 9 9 9 xs 1 1 1 0 0 1 0 0 0 0 { s 0 0 0 9 } }\np 3 0 0 0 1 0 0 0 1 0\n\
         la slide 0 5 0 1 0 0\nk ghost { visibility 2 1 0 2 1 }\n";
     let files = Files::new(&[("main.aff", &format!("{text}{KEYS}"))]);
@@ -117,7 +117,7 @@ fn what_is_not_visible_is_left_out_and_lights_move() {
 }
 
 #[test]
-fn animated_triangles_go_straight_and_stop_at_both_ends() {
+fn animated_triangles_are_interpolated_linearly_and_constant_outside() {
     let files = Files::new(&[(
         "main.aff",
         "tpa 3 1 0 0 0 0 0 1 1 0 0 0 0 1 0 1 0 0 0 1\n 2 0 0 8 0 1 0 1 0 8 0 1 0 0 1 8 0 1 0\n\
@@ -143,45 +143,49 @@ fn includes_are_relative_to_their_file_and_follow_the_detail_level() {
     let scene = files.load("main.aff").unwrap();
     assert_eq!(scene.triangles.len(), 24 * 11 * 2 + 2);
     assert_eq!(files.load("up.aff").unwrap().triangles.len(), 1);
-    // One entity may end and the next begin in a line, also where files meet
+    // An entity may end and the next may begin on the same line, also at an include.
     assert_eq!(scene.warnings, [""; 0]);
 }
 
 #[test]
-fn a_still_viewpoint_is_a_camera_and_nff_a_scene() {
+fn a_static_viewpoint_is_a_camera_and_nff_is_read() {
     let text = format!("v from 0 0 9 at 0 0 0 up 0 0 1 angle 30 hither .1 resolution 640 480\n{TRIANGLE}");
     let scene = Files::new(&[("main.nff", &text)]).load("main.nff").unwrap();
     let camera = scene.camera.unwrap();
     assert_eq!((camera.field_of_view, camera.frames.len()), (30.0, 1));
     let Pose { position, direction, up, .. } = camera.frames[0];
     assert_eq!((position, direction), (Vec3::Z * 9.0, Vec3::NEG_Z));
-    assert!(up.is_normalized() && up.dot(direction).abs() < 1e-6, "not the file's, along which it looks: {up}");
+    assert!(
+        up.is_normalized() && up.dot(direction).abs() < 1e-6,
+        "the file's up vector is parallel to the direction: {up}"
+    );
     let nowhere = text.replace("from 0 0 9", "from 0 0 0");
     assert_eq!(Files::new(&[("main.nff", &nowhere)]).load("main.nff").unwrap().camera, None);
 }
 
 #[test]
-fn another_camera_may_be_named() {
+fn the_camera_can_be_selected_by_name() {
     let other = "k camera { transl 4 0 5 0 0 0 0 0 1 5 0 0 0 0 0 2 5 0 0 0 0 0 3 5 0 0 0 0 0 }\n";
     let files = Files::new(&[("main.aff", &format!("v from 0 0 9 at 0 0 0 a 0 3 4 {TRIANGLE}\n{other}{KEYS}"))]);
-    let position = |what: &str| files.load(what).map(|scene| scene.camera.unwrap().frames[2].position);
+    let position = |spec: &str| files.load(spec).map(|scene| scene.camera.unwrap().frames[2].position);
     assert!(position("main.aff").unwrap() != position("main.aff:camera=slide").unwrap());
     assert_eq!(position("main.aff:camera=camera").unwrap(), position("main.aff").unwrap());
     let error = position("main.aff:camera=Slide").unwrap_err().to_string();
     assert!(error.contains("there are no keyframes `Slide`"), "{error}");
 }
 
-/// Without any time there is no moment to name: the viewpoint's is 0, and animated triangles stand where they begin.
+/// Without animation and keys, the viewpoint has the time 0, and animated triangles have their first position.
 #[test]
-fn a_viewpoint_without_animation_is_of_time_zero() {
+fn a_viewpoint_without_animation_has_time_zero() {
     let scene = aff(&format!("v from 0 0 9 at 0 0 0 up 0 1 0 angle 40\n{TRIANGLE}"));
     assert_eq!(scene.camera.unwrap().frames[0].time, 0.0);
 }
 
-/// The thesis's museum and robots: counts, vertices and the grid's row (`thesis/*.csv`) as published. The robots' time is
-/// not published; of whole seconds and of the 800 frames it was looked for (time 6 gives all four numbers).
+/// Compares the museum and the robots with the thesis of 2009: numbers of triangles and vertices, and the row of the
+/// grid in `thesis/*.csv`. The time of the robots is not published; it was searched among whole seconds and the 800
+/// frames (time 6 gives all four numbers).
 #[test]
-fn the_real_museum_and_robots_are_the_published_ones() {
+fn the_real_museum_and_robots_equal_the_published_ones() {
     let Some(folder) = real_scenes("the_real_museum_and_robots_are_the_published_ones") else { return };
     for (file, structure, counts, cells, fullest, references) in [
         ("museum/museum6-derived.aff:time=3,cones=no", "grid", (14_380, 17_889, 2), [71, 43, 106], 111, "9.50"),

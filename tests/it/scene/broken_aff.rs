@@ -1,9 +1,9 @@
-//! BART files that are broken: one clear error each, with file and line.
+//! Tests of invalid BART files: each gives one error with file and line.
 
 use super::{Files, refusal};
 
 #[test]
-fn each_fault_is_named_with_its_line() {
+fn each_error_has_its_line() {
     let cases: &[(&str, &[&str])] = &[
         ("", &["main.aff: there is no triangle"]),
         ("\n# only a comment", &["there is no triangle"]),
@@ -13,41 +13,41 @@ fn each_fault_is_named_with_its_line() {
         ("s 0 0 1e999 1", &[":1: s: `1e999` is not a finite number"]),
         ("s 0 0 1e99 1", &[":1: a corner at", "not finite in single precision"]),
         ("l 0 1e99 0", &[":1: a light at"]),
-        ("\n\nsphere 0 0 0 1", &[":3: `sphere` is no entity"]),
+        ("\n\nsphere 0 0 0 1", &[":3: `sphere` is not an entity"]),
         ("f 1 0 0\nhex 0 0 0", &[":2: f: `hex` is not a number"]),
-        ("p 1000000000 0 0 0", &[":1: p: 1000000000 cannot stand in the 6 bytes that are left"]),
+        ("p 1000000000 0 0 0", &[":1: p: 1000000000 do not fit into the remaining 6 bytes"]),
         ("p -3 0 0 0", &[":1: p: -3 is negative"]),
         ("p 3.5 0 0 0", &[":1: p: `3.5` is not a whole number"]),
         ("p 99999999999999999999 0 0 0", &["not a whole number"]),
         ("p 2 0 0 0 1 1 1", &["there is no triangle"]),
-        ("m vertices 1000000000 0 0 0", &[":1: vertices: 1000000000 cannot stand"]),
-        ("m vertices 1 0 0 0 triangles 1000000000 0 0 0", &["triangles: 1000000000 cannot stand"]),
+        ("m vertices 1000000000 0 0 0", &[":1: vertices: 1000000000 do not fit"]),
+        ("m vertices 1 0 0 0 triangles 1000000000 0 0 0", &["triangles: 1000000000 do not fit"]),
         ("m vertices 1 0 0 0 triangles 1 0 0 1", &[":1: m: index 1 is out of range (give 0 to 0)"]),
         ("m vertices 1 0 0 0 triangles 1 0 0 -1", &["index -1 is out of range"]),
         ("m vertices 0 triangles 1 0 0 0", &["index 0 is out of range (there are none)"]),
         ("m vertices 1 0 0 0 normals 1 0 0 1 triangles 1 0 0 0 0 0 7", &["index 7 is out of range"]),
-        ("m vertices 1 0 0 0 faces 1 0 0 0", &["`faces` is no part of a mesh", "texturecoords"]),
+        ("m vertices 1 0 0 0 faces 1 0 0 0", &["`faces` is not a part of a mesh", "texturecoords"]),
         ("m points 1 0 0 0", &["m needs `vertices` here"]),
-        ("s 0 0 0 1\n}", &[":2: `}` ends no transform"]),
+        ("s 0 0 0 1\n}", &[":2: `}` closes no transform"]),
         ("\nxs 1 1 1 0 0 1 0 0 0 0 {\ns 0 0 0 1", &[":2: the transform that begins here has no `}`"]),
         ("x name s 0 0 0 1", &["a transform needs `{` here, but there is `s`"]),
-        ("tpa 0", &["at no time at all"]),
+        ("tpa 0", &["the triangle has no times"]),
         (
             "tpa 2 2 0 0 0 0 0 1 1 0 0 0 0 1 0 1 0 0 0 1 1 0 0 0 0 0 1 1 0 0 0 0 1 0 1 0 0 0 1",
-            &["tpa: time 1 comes behind 2"],
+            &["tpa: time 1 follows the later time 2"],
         ),
-        ("k a { transl 3 0 0 0 0 0 0 0 1 0 0 0 0 0 0 2 0 0 0 0 0 0 }", &["transl: 3 keys", "needs four"]),
-        ("k a { transl 1000000000 0 }", &["transl: 1000000000 cannot stand"]),
-        ("k a { turn 4 }", &["`turn` is no block of keyframes", "visibility"]),
+        ("k a { transl 3 0 0 0 0 0 0 0 1 0 0 0 0 0 0 2 0 0 0 0 0 0 }", &["transl: 3 keys", "needs at least four"]),
+        ("k a { transl 1000000000 0 }", &["transl: 1000000000 do not fit"]),
+        ("k a { turn 4 }", &["`turn` is not a block of keyframes", "visibility"]),
         ("k a\n{ visibility 1 0 1", &["the file ends within k"]),
-        ("a 0 1 0", &["an animation of 0 frames", "1 to 100000"]),
-        ("a 0 1 1000000000", &["an animation of 1000000000 frames"]),
+        ("a 0 1 0", &["the animation has 0 frames", "1 to 100000"]),
+        ("a 0 1 1000000000", &["the animation has 1000000000 frames"]),
         ("v from 0 0 0 angle 180", &["field of view of 180 degrees"]),
         ("i 0 main.aff", &["main.aff:1: include `main.aff`: the file includes itself"]),
         ("i 0 loop.aff", &["main.aff"; 0]),
         ("i 0 nowhere.aff", &["main.aff:1: include `nowhere.aff`: no such file"]),
         ("i 0 parts", &["include `parts`"]),
-        ("i 0 parts/broken.aff", &["parts/broken.aff:2: `oops` is no entity"]),
+        ("i 0 parts/broken.aff", &["parts/broken.aff:2: `oops` is not an entity"]),
         ("i x main.aff", &["`x` is not a whole number"]),
         ("i 0 ../outside.aff", &["lies outside of the scene's folder", "outside=yes"]),
         ("i 0 bomb0.aff", &["files are included too often"]),
@@ -75,15 +75,15 @@ fn each_fault_is_named_with_its_line() {
 }
 
 #[test]
-fn a_file_outside_is_read_if_that_is_wanted() {
+fn a_file_outside_of_the_folder_is_read_if_it_is_allowed() {
     let files = Files::new(&[("main.aff", "i 0 ../outside.aff"), ("../outside.aff", "s 0 0 0 1")]);
     assert!(files.load("main.aff").is_err());
     assert!(files.load("main.aff:outside=yes").unwrap().triangles.len() > 100);
 }
 
-/// What is not visible takes no memory, but time.
+/// Invisible objects take no memory, but reading them takes time.
 #[test]
-fn a_large_file_is_not_read_over_and_over() {
+fn a_large_file_cannot_be_included_too_often() {
     let large = "p 3 0 0 0 1 0 0 0 1 0\n".repeat(200_000);
     let including = |times: usize| {
         let includes = "i 0 large.aff\n".repeat(times);
@@ -98,9 +98,9 @@ fn a_large_file_is_not_read_over_and_over() {
 }
 
 #[test]
-fn copies_of_copies_come_to_an_end() {
-    // Ten spheres, ten times, ten times, ten times, ...
-    let ten = |what: &str| format!("{what}\n").repeat(10);
+fn nested_copies_are_limited() {
+    // Each file includes the next one ten times.
+    let ten = |line: &str| format!("{line}\n").repeat(10);
     let mut files = vec![("copies0.aff".to_owned(), ten("s 0 0 0 1"))];
     files.extend((1..6).map(|i| (format!("copies{i}.aff"), ten(&format!("i 0 copies{}.aff", i - 1)))));
     let files: Vec<(&str, &str)> = files.iter().map(|(name, text)| (name.as_str(), text.as_str())).collect();

@@ -1,19 +1,19 @@
-//! PLY files that are broken: one clear error each, and never a panic.
+//! Tests of invalid PLY files: each gives one error, and none panics.
 
 use super::ply::{Encoded, encode};
 use super::{load_bytes, refusal};
 use proptest::prelude::*;
 
-/// A header, and a body of three vertices and a face; what each test breaks.
+/// The header of a valid file; with [`BODY`], three vertices and a face.
 const HEADER: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
     element face 1\nproperty list uchar int vertex_indices\nend_header\n";
 const BODY: &str = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
 
 #[test]
-fn each_fault_is_named_with_its_line_and_mend() {
+fn each_error_has_its_line_and_a_hint() {
     let whole = format!("{HEADER}{BODY}");
     load_bytes(whole.as_bytes()).unwrap();
-    // (what to replace, by what, words of the error)
+    // (text to be replaced, replacement, parts of the error)
     let cases: &[(&str, &str, &[&str])] = &[
         (&whole, "", &["mesh.ply: the file is empty"]),
         (&whole, "solid cube\n", &["mesh.ply:1: not a PLY file"]),
@@ -27,19 +27,19 @@ fn each_fault_is_named_with_its_line_and_mend() {
         (BODY, "", &["at least 18 bytes, but only 0 bytes are left", "truncated"]),
         ("property float z\n", "", &[":3: the vertices have no coordinate `z`"]),
         ("property float x", "property list uchar float x", &["no coordinate `x`"]),
-        ("property float y", "property float x", &[":5: a second property `x`"]),
+        ("property float y", "property float x", &[":5: the property `x` of element `vertex` is declared twice"]),
         ("property float y", "property real y", &[":5: type `real` is unknown", "double"]),
-        ("property float y", "property float", &[":5: not a property"]),
+        ("property float y", "property float", &[":5: this is not the declaration of a property"]),
         ("element vertex 3", "element vertices 3", &["no element `vertex`"]),
         ("element vertex 3", "element vertex three", &[":3: `three` is not a number"]),
         ("element vertex 3", "element vertex -3", &[":3: `-3` is not a number"]),
-        ("element vertex 3", "property int x\nelement vertex 3", &[":3: a property before the first element"]),
+        ("element vertex 3", "property int x\nelement vertex 3", &[":3: there is a property before the first element"]),
         (
             "element vertex 3",
             "element vertex 1099511627776",
-            &[":3: 1099511627776 elements `vertex` are more than rtbench handles (134217728)"],
+            &[":3: 1099511627776 elements `vertex` are more than rtbench supports (134217728)"],
         ),
-        ("element vertex 3", "element vertex 134217729", &["more than rtbench handles"]),
+        ("element vertex 3", "element vertex 134217729", &["more than rtbench supports"]),
         ("element vertex 3", "element vertex 134217728", &[":3: 134217728 elements `vertex` need", "bytes are left"]),
         ("element face 1", "element face 1099511627776", &[":7: 1099511627776 elements `face` are more"]),
         ("element face 1", "element face 18446744073709551615", &["elements `face` are more"]),
@@ -50,17 +50,21 @@ fn each_fault_is_named_with_its_line_and_mend() {
             &[":7: 18446744073709551615 elements `junk` need"],
         ),
         ("element face 1", "element face 99999999999999999999", &["not a number"]),
-        ("element face 1", "element vertex 1", &[":7: a second element `vertex`"]),
+        ("element face 1", "element vertex 1", &[":7: the element `vertex` is declared twice"]),
         (
             "element face 1\nproperty list uchar int vertex_indices\n",
             "",
             &["no faces: a point cloud cannot be ray traced"],
         ),
-        ("element face 1", "element face 0", &[":7: no faces: a point cloud"]),
+        ("element face 1", "element face 0", &[":7: there are no faces: a point cloud"]),
         ("element face 1", "element tristrips 1", &["no faces", "triangle strips"]),
         ("vertex_indices", "corners", &[":7: the faces have no list `vertex_indices`"]),
         ("list uchar int", "list uchar float", &["not a list of integers"]),
-        ("list uchar int", "list float int", &[":8: the count of list `vertex_indices` is not of an integer type"]),
+        (
+            "list uchar int",
+            "list float int",
+            &[":8: the type of the count of list `vertex_indices` is not an integer type"],
+        ),
         ("list uchar int", "int", &["not a list of integers"]),
         ("1 0 0\n", "1 nan 0\n", &[":11: vertex 1 lies at (1, NaN, 0), which is not finite"]),
         ("1 0 0\n", "1 inf 0\n", &[":11: vertex 1", "not finite"]),
@@ -89,7 +93,7 @@ fn each_fault_is_named_with_its_line_and_mend() {
 }
 
 #[test]
-fn binary_faults_name_the_vertex_or_face() {
+fn errors_in_binary_files_have_the_number_of_the_vertex_or_face() {
     let points = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     let sound = encode(&points, &[vec![0, 1, 2]]);
     load_bytes(&sound.little).unwrap();
@@ -101,7 +105,7 @@ fn binary_faults_name_the_vertex_or_face() {
     let message = refusal(load_bytes(&encode(&infinite, &[vec![0, 1, 2]]).little));
     assert!(message.contains("vertex 1 lies at (1, inf, 0), which is not finite"), "{message}");
 
-    // A list that claims 2^31 items, in a property that is passed over.
+    // A list of 2^31 items in an ignored property
     let text = "ply\nformat binary_big_endian 1.0\nelement junk 1\nproperty list uint double a\nelement vertex 3\n\
         property float x\nproperty float y\nproperty float z\nelement face 1\n\
         property list uchar int vertex_indices\nend_header\n";
@@ -109,7 +113,7 @@ fn binary_faults_name_the_vertex_or_face() {
     assert!(refusal(load_bytes(&bytes)).contains("the file ends within junk 0"));
 }
 
-/// A small valid mesh with every encoding's bytes.
+/// A small valid mesh in all encodings.
 fn sample() -> Encoded {
     let points: Vec<[f32; 3]> = (0..8).map(|i| [(i & 1) as f32, (i >> 1 & 1) as f32 * 1.5, (i >> 2) as f32]).collect();
     encode(&points, &[vec![0, 1, 3, 2], vec![4, 6, 7, 5], vec![0, 4, 5], vec![1, 5, 7, 3], vec![2, 3, 7]])
@@ -118,7 +122,7 @@ fn sample() -> Encoded {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 1500, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Whatever is changed, cut or put in: a scene that keeps the invariants, or one error; no panic.
+    /// A file with changed, removed or inserted bytes gives a valid scene or one error, and does not panic.
     #[test]
     fn mutated_files_never_panic(
         encoding in 0..3usize,
@@ -133,7 +137,7 @@ proptest! {
                 0 => bytes[at] = value,
                 1 => bytes.insert(at, value),
                 2 => { bytes.remove(at); }
-                // A digit more or less makes the most of headers and texts.
+                // Changed digits find most errors in headers and texts.
                 _ => bytes[at] = b"0123456789-+.e \n"[value as usize % 16],
             }
         }
@@ -143,7 +147,7 @@ proptest! {
         let path = std::path::Path::new("mutated.ply");
         if let Ok(mut scene) = rtbench::scene::ply::read_bytes(path, &bytes) {
             scene.materials.push(rtbench::scene::Material::neutral());
-            // Coordinates may have become so large that the bounds are not finite, which `load` refuses.
+            // Coordinates can become so large that the bounds are not finite, which `load` refuses.
             if let Err(error) = scene.check() {
                 prop_assert!(error.to_string().contains("too large"), "{}", error);
             }
@@ -151,7 +155,7 @@ proptest! {
     }
 }
 
-/// Found by fuzzing: the vertices use all that there is, down to the byte that the last value of a text may lack.
+/// Found by fuzzing: the vertices take all bytes of the body, including the blank that the last value may lack.
 #[test]
 fn a_body_that_ends_with_its_first_element_is_refused() {
     let header = "ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty uchar x\nproperty uchar y\nproperty uchar z\n\

@@ -1,10 +1,11 @@
-//! Built-in scenes: sound, deterministic, as large as wanted, and of the character they claim.
+//! Tests of built-in scenes: they are valid and deterministic, and have the requested size and the described
+//! properties.
 
 use rtbench::scene::{self, Scene, list};
 use std::collections::HashMap;
 
-fn load(what: &str) -> Scene {
-    scene::load(what).unwrap_or_else(|e| panic!("{e}"))
+fn load(spec: &str) -> Scene {
+    scene::load(spec).unwrap_or_else(|e| panic!("{e}"))
 }
 
 #[test]
@@ -20,7 +21,7 @@ fn all_are_listed_with_range_and_default() {
 }
 
 #[test]
-fn all_are_sound_and_the_same_twice() {
+fn all_are_valid_and_deterministic() {
     for info in list() {
         let scene = load(info.name);
         scene.check().unwrap();
@@ -33,7 +34,7 @@ fn all_are_sound_and_the_same_twice() {
 }
 
 #[test]
-fn triangles_are_followed() {
+fn the_number_of_triangles_is_as_requested() {
     let mut off = Vec::new();
     for info in list() {
         let p = info.parameters[0];
@@ -51,7 +52,7 @@ fn triangles_are_followed() {
     assert!(off.is_empty(), "{off:?}");
 }
 
-/// Corner normals lie on the side to which the triangle's winding points; otherwise a surface is inside out.
+/// Vertex normals are on the side from which the triangle is counter-clockwise; otherwise the surface faces inwards.
 #[test]
 fn normals_agree_with_the_winding() {
     for info in list() {
@@ -66,9 +67,9 @@ fn normals_agree_with_the_winding() {
     }
 }
 
-/// No triangle stands twice in the same place: that would flicker.
+/// No two triangles have the same corners, which would make the nearest hit ambiguous.
 #[test]
-fn no_triangle_is_there_twice() {
+fn no_triangle_is_duplicated() {
     for info in list() {
         let scene = load(info.name);
         let mut seen = HashMap::new();
@@ -83,9 +84,9 @@ fn no_triangle_is_there_twice() {
 }
 
 #[test]
-fn the_scan_is_closed_and_even() {
-    for what in ["scan:triangles=5000", "scan", "scan:triangles=250000"] {
-        let scene = load(what);
+fn the_scan_is_closed_and_uniform() {
+    for spec in ["scan:triangles=5000", "scan", "scan:triangles=250000"] {
+        let scene = load(spec);
         let mut edges = HashMap::new();
         for t in &scene.triangles {
             let [a, b, c] = t.vertices;
@@ -93,9 +94,10 @@ fn the_scan_is_closed_and_even() {
                 *edges.entry((from, to)).or_insert(0) += 1;
             }
         }
-        // Every edge has its opposite exactly as often: no hole, no flipped face. (A net may touch itself at an edge.)
+        // Every directed edge and its opposite occur equally often: there are no holes and no flipped faces. (A surface
+        // net may touch itself at an edge.)
         for (&(from, to), &count) in &edges {
-            assert_eq!(edges.get(&(to, from)), Some(&count), "{what}");
+            assert_eq!(edges.get(&(to, from)), Some(&count), "{spec}");
         }
         let mut areas: Vec<f32> = (0..scene.triangles.len() as u32)
             .map(|i| {
@@ -105,24 +107,24 @@ fn the_scan_is_closed_and_even() {
             .collect();
         areas.sort_by(f32::total_cmp);
         let at = |share: f32| areas[(areas.len() as f32 * share) as usize];
-        assert!(at(0.95) / at(0.05) < 12.0, "{what}: {} {}", at(0.05), at(0.95));
+        assert!(at(0.95) / at(0.05) < 12.0, "{spec}: {} {}", at(0.05), at(0.95));
     }
 }
 
 #[test]
-fn characters_are_as_claimed() {
+fn scenes_have_the_described_properties() {
     let hall = load("hall");
     assert!(hall.lights.len() >= 3 && hall.mirror_share() > 0.15, "{}", hall.mirror_share());
     assert_eq!(load("scan").mirror_share(), 0.0);
     assert_eq!(load("scan").lights.len(), 1);
 
-    // Half of the stadium's triangles lie within a metre of a scene that is hundreds of metres wide.
+    // Half of the stadium's triangles lie within a metre of the centre; the scene is hundreds of metres wide.
     let stadium = load("stadium");
     let near = (0..stadium.triangles.len() as u32).filter(|&i| stadium.corners(i)[0].length() < 2.0).count();
     assert!(near * 2 > stadium.triangles.len(), "{near} of {}", stadium.triangles.len());
     assert!(stadium.bounds().extent().x > 200.0);
 
-    // Every eighth triangle of the room is at least twenty times as long as wide.
+    // At least an eighth of the room's triangles are twenty times longer than wide.
     let room = load("room");
     let thin = (0..room.triangles.len() as u32).filter(|&i| {
         let [a, b, c] = room.corners(i);
@@ -132,7 +134,7 @@ fn characters_are_as_claimed() {
     let thin = thin.count() as f64 / room.triangles.len() as f64;
     assert!(thin > 0.02, "{thin}");
 
-    // The lights of enclosed scenes are inside, and so is everything else.
+    // The lights of enclosed scenes are inside.
     for scene in [&hall, &room] {
         let bounds = scene.bounds();
         for light in &scene.lights {

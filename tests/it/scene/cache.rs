@@ -1,4 +1,4 @@
-//! The binary cache: all of a scene comes back; what is foreign, stale, truncated or corrupt is refused.
+//! Tests of the binary cache: it restores the whole scene; foreign, stale, truncated and corrupt caches are refused.
 
 use super::refusal;
 use glam::Vec3;
@@ -6,7 +6,7 @@ use rtbench::scene::cache::{self, Sources};
 use rtbench::scene::{self, Light, Pose, Scene, SceneCamera};
 use std::path::{Path, PathBuf};
 
-/// A scene with something in every field.
+/// A scene with a value in every field.
 fn full() -> Scene {
     let mut scene = scene::load("hall:triangles=15000").unwrap();
     let pose = |time: f64| Pose { time, position: Vec3::new(0.1, 0.2, time as f32), direction: Vec3::Z, up: Vec3::Y };
@@ -27,7 +27,7 @@ fn load(path: &Path) -> rtbench::Result<Scene> {
 }
 
 #[test]
-fn everything_comes_back() {
+fn a_cache_restores_the_whole_scene() {
     let folder = tempfile::tempdir().unwrap();
     let scene = full();
     let back = load(&cached(&scene, folder.path())).unwrap();
@@ -37,17 +37,17 @@ fn everything_comes_back() {
     let bare = Scene { camera: None, camera_path: None, lights: Vec::new(), warnings: Vec::new(), ..scene };
     let back = load(&cached(&bare, folder.path())).unwrap();
     assert_eq!((&back.camera, &back.camera_path, back.lights.len()), (&None, &None, 0));
-    // Nothing is left behind beside the cache.
+    // The folder contains no other file than the cache.
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
 }
 
 #[test]
-fn options_work_on_a_cache_as_on_any_file() {
+fn options_apply_to_caches() {
     let folder = tempfile::tempdir().unwrap();
     let path = cached(&full(), folder.path());
     let scaled = scene::load(&format!("{}:scale=2", path.display())).unwrap();
     assert_eq!(scaled.vertices[5].position, full().vertices[5].position * 2.0);
-    assert_eq!(scaled.name, format!("{},scale=2", full().name), "what is different has a different name");
+    assert_eq!(scaled.name, format!("{},scale=2", full().name), "options are part of the name");
     for option in ["time=5", "cones=no", "segments=5", "lamp=foo", "camera=nix"] {
         let message = refusal(scene::load(&format!("{}:{option}", path.display())));
         assert!(message.contains("a .rtb file has no option") && message.contains("up, scale, fov"), "{message}");
@@ -55,7 +55,7 @@ fn options_work_on_a_cache_as_on_any_file() {
 }
 
 #[test]
-fn every_damage_is_refused() {
+fn damaged_caches_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = cached(&full(), folder.path());
     let sound = std::fs::read(&path).unwrap();
@@ -68,8 +68,8 @@ fn every_damage_is_refused() {
     for length in [4, 8, 100, 135, 300, sound.len() / 2, sound.len() - 1] {
         assert!(refused(&sound[..length]).contains("truncated"), "{length}");
     }
-    assert!(refused(&[&sound[..], b"x"].concat()).contains("bytes behind its end"));
-    // One bit in every part: header, vertices, triangles, texts.
+    assert!(refused(&[&sound[..], b"x"].concat()).contains("bytes after its end"));
+    // One bit is flipped in each part: header, vertices, triangles, texts.
     for at in [12, 40, 50, 131, 1000, sound.len() / 2, sound.len() - 3] {
         let mut bytes = sound.clone();
         bytes[at] ^= 4;
@@ -82,8 +82,8 @@ fn every_damage_is_refused() {
         bytes
     };
     assert!(refused(&changed(8, &[9])).contains("stale: its layout has version 9"));
-    assert!(refused(&changed(16, b"0123456789abcdef")).contains("stale: it was made by another version"));
-    // Counts beyond the file, and beyond all sense: nothing is allocated for them.
+    assert!(refused(&changed(16, b"0123456789abcdef")).contains("stale: it was written by another version"));
+    // Counts beyond the file and beyond all limits are refused before memory is allocated.
     assert!(refused(&changed(64, &(1u64 << 26).to_le_bytes())).contains("truncated"));
     assert!(refused(&changed(64, &u64::MAX.to_le_bytes())).contains("corrupt"));
     assert_eq!(refused(&sound[..0]).lines().count(), 1);
@@ -94,23 +94,23 @@ fn every_damage_is_refused() {
     assert!(refusal(load(&folder.path().join("folder.rtb"))).contains("not a regular file"));
 }
 
-/// A checksum proves that the bytes are as written, not that the writer was sound.
+/// A valid checksum does not prove that the written scene is valid.
 #[test]
-fn a_sound_checksum_does_not_excuse_a_broken_scene() {
+fn an_invalid_scene_with_a_valid_checksum_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let mut scene = full();
     scene.triangles[7].vertices[0] = u32::MAX;
     assert!(refusal(load(&cached(&scene, folder.path()))).contains("triangle 7 uses a vertex beyond"));
 }
 
-/// Converts as the program does.
-fn convert(what: &str, to: &Path) -> Scene {
-    let (scene, sources) = cache::load(what, None).unwrap();
+/// Converts a scene as the program does.
+fn convert(spec: &str, to: &Path) -> Scene {
+    let (scene, sources) = cache::load(spec, None).unwrap();
     cache::write(&scene, &sources, to).unwrap();
     scene
 }
 
-/// Sets the time of a file so many seconds ago.
+/// Sets the time of modification of a file to this many seconds ago.
 fn touch(path: &Path, ago: u64) {
     let time = std::time::SystemTime::now() - std::time::Duration::from_secs(ago);
     std::fs::File::options().append(true).open(path).unwrap().set_modified(time).unwrap();
@@ -121,7 +121,7 @@ fn text(path: &Path) -> &str {
 }
 
 #[test]
-fn a_changed_source_makes_it_stale() {
+fn a_changed_source_file_makes_a_cache_stale() {
     let folder = tempfile::tempdir().unwrap();
     let source = folder.path().join("cube.ply");
     let other = super::ply::CUBE.replacen('0', "1", 1);
@@ -130,12 +130,12 @@ fn a_changed_source_makes_it_stale() {
     let path = folder.path().join("cube.rtb");
     convert(text(&source), &path);
     load(&path).unwrap();
-    // Touched, but the same bytes
+    // The file was touched and has the same bytes.
     for ago in [10, 100_000] {
         touch(&source, ago);
         load(&path).unwrap();
     }
-    // Other bytes of the same length, newer or older
+    // The file has other bytes of the same length, and a newer or an older time.
     for ago in [10, 100_000] {
         std::fs::write(&source, &other).unwrap();
         touch(&source, ago);
@@ -144,31 +144,31 @@ fn a_changed_source_makes_it_stale() {
     }
     std::fs::write(&source, "ply").unwrap();
     assert!(refusal(load(&path)).contains("stale"));
-    // Changed at once, perhaps within the clock's step
+    // The file was changed immediately, possibly within the resolution of file times.
     std::fs::write(&source, super::ply::CUBE).unwrap();
     convert(text(&source), &path);
     std::fs::write(&source, &other).unwrap();
     assert!(refusal(load(&path)).contains("stale"));
-    // Without the source, it cannot be told, and need not.
+    // Without the source file changes cannot be detected, and the cache is accepted.
     std::fs::remove_file(&source).unwrap();
     load(&path).unwrap();
 }
 
-/// `touch -d`, `cp -p`, archives and rsync bring a file's time back, but not that of its last change.
+/// `touch -d`, `cp -p`, archives and rsync set the time of modification back, but not the time of change.
 #[cfg(unix)]
 #[test]
-fn an_edit_whose_time_was_set_back_makes_it_stale() {
+fn an_edit_with_a_restored_time_makes_a_cache_stale() {
     use std::os::unix::fs::PermissionsExt;
     let files = super::Files::new(&[("cube.ply", super::ply::CUBE)]);
     let (source, cached) = (files.path("cube.ply"), files.path("cube.rtb"));
     let past = std::time::SystemTime::now() - std::time::Duration::from_secs(1000);
     let set_back = || std::fs::File::options().append(true).open(&source).unwrap().set_modified(past).unwrap();
     set_back();
-    // Younger than the clock's step, the time of change would be left out of the cache: it is to be in it
+    // Waits until the time of change is conclusive, so that it is stored in the cache.
     std::thread::sleep(std::time::Duration::from_millis(300));
     convert(text(&source), &cached);
     load(&cached).unwrap();
-    // Other permissions and another name for a while: the same content
+    // Permissions and the name were changed temporarily; the content is the same.
     std::fs::set_permissions(&source, std::fs::Permissions::from_mode(0o600)).unwrap();
     load(&cached).unwrap();
     std::fs::rename(&source, files.path("away")).unwrap();
@@ -177,7 +177,7 @@ fn an_edit_whose_time_was_set_back_makes_it_stale() {
     files.write("cube.ply", super::ply::CUBE.replace("extras", "extraz").as_bytes());
     set_back();
     assert!(refusal(load(&cached)).contains("cube.ply has changed"));
-    // At once after it was written as well: that time may be that of a later edit
+    // The same immediately after writing, when a later edit could have the same time
     convert(text(&source), &cached);
     files.write("cube.ply", super::ply::CUBE.as_bytes());
     set_back();
@@ -185,7 +185,7 @@ fn an_edit_whose_time_was_set_back_makes_it_stale() {
 }
 
 #[test]
-fn every_file_that_was_read_counts() {
+fn every_source_file_is_checked() {
     let files = super::Files::new(&[
         ("a.obj", "mtllib a.mtl b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n"),
         ("sub/c.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
@@ -204,11 +204,11 @@ fn every_file_that_was_read_counts() {
     stale("a.mtl has changed");
     convert(&list, &cached);
     files.write("b.mtl", b"");
-    stale("b.mtl is there now");
+    stale("b.mtl exists now");
     convert(&list, &cached);
     std::fs::remove_file(files.path("sub/c.obj")).unwrap();
-    stale("c.obj is gone");
-    // A folder with its own cache in it
+    stale("c.obj no longer exists");
+    // A folder that contains its own cache
     let cached = files.path("folder.rtb");
     let folder = text(&files.path("")).to_owned();
     convert(&folder, &cached);
@@ -222,13 +222,13 @@ fn every_file_that_was_read_counts() {
 }
 
 #[test]
-fn a_cache_of_a_cache_is_made_from_the_same() {
+fn a_cache_of_a_cache_depends_on_the_same_source_files() {
     let files = super::Files::new(&[("a.ply", super::ply::CUBE)]);
     let (source, y, z) = (files.path("a.ply"), files.path("y.rtb"), files.path("z.rtb"));
     let scaled = format!("{}:scale=2", text(&y));
     convert(text(&source), &y);
     assert_eq!(convert(&scaled, &z).name, "a:scale=2");
-    // The same again, at another time
+    // The same content, written at another time
     touch(&source, 1000);
     convert(text(&source), &y);
     load(&z).unwrap();
@@ -238,7 +238,7 @@ fn a_cache_of_a_cache_is_made_from_the_same() {
     load(&z).unwrap();
     files.write("a.ply", super::ply::CUBE.replacen('0', "1", 1).as_bytes());
     assert!(refusal(load(&z)).contains("a.ply has changed"));
-    // One that is written over what it was made from
+    // A cache that replaces its own source
     convert("hall:triangles=15000", &y);
     convert(&scaled, &y);
     load(&y).unwrap();
@@ -246,7 +246,7 @@ fn a_cache_of_a_cache_is_made_from_the_same() {
 
 #[cfg(unix)]
 #[test]
-fn a_pipe_is_refused_and_not_waited_for() {
+fn a_pipe_is_refused_without_waiting() {
     let folder = tempfile::tempdir().unwrap();
     let pipe = folder.path().join("pipe.rtb");
     assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
@@ -254,7 +254,7 @@ fn a_pipe_is_refused_and_not_waited_for() {
 }
 
 #[test]
-fn a_cache_that_cannot_be_written_leaves_nothing() {
+fn a_cache_that_cannot_be_written_leaves_no_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("no/such/folder/scene.rtb");
     let error = cache::write(&full(), &Sources::default(), &path).unwrap_err().to_string();

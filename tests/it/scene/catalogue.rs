@@ -1,4 +1,4 @@
-//! The catalogue: sound entries, disjoint names, found or missing files.
+//! Tests of the catalogue: valid entries, unique names, existing and missing files.
 
 use super::{real_scenes, refusal};
 use rtbench::scene::catalogue::{Class, entries, find, get, locate};
@@ -6,7 +6,7 @@ use rtbench::scene::{self, load_in};
 use std::path::{Component, Path};
 
 #[test]
-fn entries_are_sound() {
+fn entries_are_valid() {
     let published: Vec<&str> = entries().iter().filter(|e| e.published).map(|e| e.name.as_str()).collect();
     assert_eq!(
         published,
@@ -28,7 +28,7 @@ fn entries_are_sound() {
         if let Some(archive) = &entry.fetch {
             assert!(archive.url.starts_with("https://") && archive.url.ends_with(".tar.gz"), "{name}");
             assert!(inside(&archive.member), "{name}");
-            assert!(entry.file.iter().any(|c| c.path == archive.to), "{name}: what is fetched would not be found");
+            assert!(entry.file.iter().any(|c| c.path == archive.to), "{name}: the downloaded file would not be found");
         }
         if let Some(path) = &entry.camera_path {
             assert!(rtbench::camera::names().contains(&path.as_str()), "{name}: no camera path {path}");
@@ -44,7 +44,7 @@ fn entries_are_sound() {
 }
 
 #[test]
-fn no_name_means_two_scenes() {
+fn names_are_unique() {
     let mut names: Vec<&str> = entries().iter().map(|e| e.name.as_str()).collect();
     names.extend(scene::list().iter().map(|info| info.name));
     let all = names.len();
@@ -54,7 +54,7 @@ fn no_name_means_two_scenes() {
 }
 
 #[test]
-fn a_name_is_its_file_in_the_folder_of_scenes() {
+fn a_name_loads_its_file_in_the_folder_of_scenes() {
     let folder = tempfile::tempdir().unwrap();
     let entry = find("bunny").unwrap();
     assert_eq!(locate(entry, folder.path()), None);
@@ -62,7 +62,7 @@ fn a_name_is_its_file_in_the_folder_of_scenes() {
     assert!(message.contains("has no bunny/bun_zipper.ply") && message.contains("scenes fetch bunny"), "{message}");
     let message = refusal(load_in("bunny", Some(&folder.path().join("nowhere"))));
     assert!(message.contains("does not exist"), "{message}");
-    // The last of the candidates, then the first.
+    // The last of the locations, then the first
     for place in ["bun_zipper.ply", "bunny/bun_zipper.ply"] {
         let path = folder.path().join(place);
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -82,7 +82,7 @@ fn a_name_is_its_file_in_the_folder_of_scenes() {
 }
 
 #[test]
-fn a_folder_and_a_list_are_one_scene() {
+fn a_folder_or_a_list_of_files_is_one_scene() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let whole = folder.path().to_str().unwrap();
@@ -92,16 +92,16 @@ fn a_folder_and_a_list_are_one_scene() {
     }
     std::fs::write(folder.path().join("notes.txt"), "not a scene").unwrap();
     let one = scene::load(&at("a.ply")).unwrap();
-    for what in [whole.to_owned(), format!("{}+{}", at("a.ply"), at("b.ply")), format!("{whole}/")] {
-        let both = scene::load(&what).unwrap();
-        assert_eq!(both.triangles.len(), 2 * one.triangles.len(), "{what}");
+    for spec in [whole.to_owned(), format!("{}+{}", at("a.ply"), at("b.ply")), format!("{whole}/")] {
+        let both = scene::load(&spec).unwrap();
+        assert_eq!(both.triangles.len(), 2 * one.triangles.len(), "{spec}");
         assert_eq!(both.vertices.len(), 2 * one.vertices.len());
         let (first, second) = (both.triangles[0], both.triangles[one.triangles.len()]);
         assert_eq!(second.vertices, first.vertices.map(|v| v + one.vertices.len() as u32));
         assert_eq!(second.material, 1);
         assert_eq!(
             both.name,
-            if what.contains('+') { "a+b".into() } else { folder.path().file_name().unwrap().to_string_lossy() }
+            if spec.contains('+') { "a+b".into() } else { folder.path().file_name().unwrap().to_string_lossy() }
         );
     }
     let message = refusal(scene::load(&format!("{}+{whole}", at("a.ply"))));
@@ -112,40 +112,40 @@ fn a_folder_and_a_list_are_one_scene() {
 }
 
 #[test]
-fn what_a_file_of_a_folder_includes_is_not_read_again() {
+fn included_files_of_a_folder_are_not_read_twice() {
     let square = "p 3\n0 0 0\n1 0 0\n0 1 0\n";
     let level = format!("i 0 part.aff\n{square}");
     let files = super::Files::new(&[("part.aff", square), ("scene.aff", &level), ("text.txt", "")]);
     let folder = files.path("");
     let scene = scene::load(folder.to_str().unwrap()).unwrap();
     assert_eq!((scene.name.as_str(), scene.triangles.len()), ("scene", 2));
-    assert!(!scene.warnings.iter().any(|w| w.contains("made of")), "{:?}", scene.warnings);
+    assert!(!scene.warnings.iter().any(|w| w.contains("consists of")), "{:?}", scene.warnings);
     files.write("two.aff", level.as_bytes());
     let scene = scene::load(folder.to_str().unwrap()).unwrap();
     assert_eq!(scene.triangles.len(), 4);
-    for words in ["made of scene.aff, two.aff", "versions of one scene"] {
+    for words in ["consists of scene.aff, two.aff", "versions of one scene"] {
         assert!(scene.warnings.iter().any(|w| w.contains(words)), "{words}: {:?}", scene.warnings);
     }
 }
 
 #[test]
-fn options_show_in_the_name_of_a_catalogue_scene() {
+fn options_are_part_of_the_name_of_a_catalogue_scene() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::create_dir_all(folder.path().join("museum")).unwrap();
     std::fs::write(folder.path().join("museum/museum6.aff"), "p 3\n0 0 0\n1 0 0\n0 1 0\n").unwrap();
-    for (what, name) in [
+    for (spec, name) in [
         ("museum", "museum"),
         ("museum:time=3", "museum"),
         ("museum:cones=yes", "museum:cones=yes"),
         ("museum:time=4,scale=2", "museum:time=4,scale=2"),
     ] {
-        assert_eq!(load_in(what, Some(folder.path())).unwrap().name, name);
+        assert_eq!(load_in(spec, Some(folder.path())).unwrap().name, name);
     }
 }
 
-/// What is here has the counts that the catalogue promises, and the hash.
+/// The real scenes have the counts and hashes of the catalogue.
 #[test]
-fn real_scenes_are_as_the_catalogue_says() {
+fn real_scenes_agree_with_the_catalogue() {
     use sha2::{Digest, Sha256};
     let Some(folder) = real_scenes("real_scenes_are_as_the_catalogue_says") else { return };
     for entry in entries() {

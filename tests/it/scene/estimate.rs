@@ -1,4 +1,4 @@
-//! What `rtbench scenes info` says of a structure's memory before it is built.
+//! Tests of the estimates of a structure's memory in `rtbench scenes info`.
 
 use glam::Vec3;
 use rtbench::math::Vertex;
@@ -8,7 +8,7 @@ use rtbench::workloads::trace::common::estimate;
 use rtbench::workloads::trace::grid;
 use rtbench::workloads::trace::grid::Grid;
 
-/// A square of so many cells along each edge, as high as it says.
+/// A square heightfield with this number of cells along each edge.
 fn field(cells: u32, height: f32) -> Scene {
     let mut random = crate::support::random(3);
     let row = cells + 1;
@@ -27,35 +27,35 @@ fn field(cells: u32, height: f32) -> Scene {
     }
 }
 
-/// The builder makes a grid coarser where the rule would take all memory, and the estimate knows that.
+/// The builder coarsens a grid if the rule would take too much memory; the estimate takes this into account.
 #[test]
-fn the_grid_is_estimated_with_the_builders_limits() {
+fn the_estimate_of_the_grid_includes_the_limits_of_the_builder() {
     for (cells, height) in [(100, 100.0), (100, 1.0), (100, 0.01), (20, 0.0)] {
         let scene = field(cells, height);
-        let config = grid::build::Config::default();
-        let grid: Grid = grid::build::build(&scene, &config).unwrap();
+        let grid: Grid = grid::build::build(&scene, &grid::build::Config::default()).unwrap();
         let built = (size_of_val(grid.cells.as_slice()) + size_of_val(grid.triangle_refs.as_slice())) as f64;
-        let estimate = estimate::estimates(&scene, &config).unwrap()[0];
+        let estimate = estimate::estimates(&scene, &[Selection::parse("grid").unwrap()]).unwrap()[0];
         let off = estimate.structure_bytes as f64 / built;
         assert!((1.0 / estimate.factor..estimate.factor).contains(&off), "height {height}: {off} of {built}");
     }
 }
 
-/// What is printed beside the estimates is true of real scenes.
+/// The printed factors of uncertainty hold for real scenes.
 #[test]
-fn estimates_are_as_close_as_they_say() {
+fn estimates_are_within_their_stated_factors() {
     let Some(folder) = super::real_scenes("estimates_are_as_close_as_they_say") else { return };
     let scenes = [("bunny", ""), ("museum", ""), ("robots", ":x=128"), ("sponza", ""), ("dragon", "")];
     for (name, options) in scenes {
         let scene = match load_in(name, Some(&folder)) {
             Ok(scene) => scene,
             Err(error) => {
-                eprintln!("{name} was left out: {error}");
+                eprintln!("{name} was skipped: {error}");
                 continue;
             }
         };
-        let grid = Selection::parse(&format!("grid{options}")).unwrap();
-        let estimates = estimate::estimates(&scene, &grid.grid_config().unwrap()).unwrap();
+        let selections = [format!("grid{options}"), "kdtree".to_owned(), "bvh".to_owned()];
+        let selections = selections.map(|text| Selection::parse(&text).unwrap());
+        let estimates = estimate::estimates(&scene, &selections).unwrap();
         let mut thesis = Vec::new();
         for estimate in estimates {
             let options = if estimate.structure == "grid" { options } else { "" };

@@ -1,5 +1,5 @@
-//! Fetching from a server of our own on loopback: success, wrong hashes, a cut connection, redirects, refusals, archives
-//! that want out of their folder.
+//! Tests of downloads from a local server: success, wrong hashes, broken connections, redirects, refusals, archives
+//! with paths outside of their folder.
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
@@ -11,24 +11,24 @@ use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 
-/// What the server does with one request.
+/// The answer of the server to a request.
 #[derive(Clone)]
 enum Answer {
-    /// All, or the range that is asked for.
+    /// Sends everything, or the requested range.
     Serve(Vec<u8>),
-    /// All, whatever range is asked for.
+    /// Sends everything, and ignores a requested range.
     Whole(Vec<u8>),
-    /// Announces all, sends so many bytes, hangs up.
+    /// Announces everything, sends this number of bytes, and closes the connection.
     Cut(Vec<u8>, usize),
-    /// Announces all, sends so many bytes, and then nothing, with the connection open.
+    /// Announces everything, sends this number of bytes, and keeps the connection open.
     Silent(Vec<u8>, usize),
-    /// Another place.
+    /// Redirects to this address.
     Redirect(String),
-    /// A status without a body.
+    /// Sends a status without a body.
     Status(&'static str),
 }
 
-/// Answers one request after the other, each on a connection of its own; the `Range` of each is reported.
+/// Answers the requests in order, each on a separate connection. The receiver gets the `Range` of each request.
 fn server(answers: Vec<Answer>) -> (String, Receiver<Option<String>>) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let url = format!("http://{}/a.tar.gz", listener.local_addr().unwrap());
@@ -65,7 +65,7 @@ fn server(answers: Vec<Answer>) -> (String, Receiver<Option<String>>) {
                 }
                 (Answer::Status(status), _) => (head(status, "Content-Length: 0\r\n".into()), Vec::new()),
             };
-            // The client may have hung up.
+            // The client may have closed the connection.
             let _ = stream.write_all(head.as_bytes()).and_then(|()| stream.write_all(&body));
             if silent {
                 std::mem::forget(stream);
@@ -75,7 +75,7 @@ fn server(answers: Vec<Answer>) -> (String, Receiver<Option<String>>) {
     (url, reports)
 }
 
-/// A tar.gz; names are written as they are, unlike tar's own builder, which refuses bad ones.
+/// A tar.gz. Names are written unchanged; the builder of the crate `tar` would refuse invalid ones.
 fn archive(entries: &[(&str, tar::EntryType, &[u8])]) -> Vec<u8> {
     let mut builder = tar::Builder::new(GzEncoder::new(Vec::new(), Compression::default()));
     for (name, kind, content) in entries {
@@ -92,7 +92,7 @@ fn archive(entries: &[(&str, tar::EntryType, &[u8])]) -> Vec<u8> {
 
 const FILE: tar::EntryType = tar::EntryType::Regular;
 
-/// Noise, so that the archive is not much smaller.
+/// Noise, which cannot be compressed.
 fn content() -> Vec<u8> {
     let mut random = crate::support::random(7);
     (0..300_000).map(|_| (random() * 128.0) as i8 as u8).collect()
@@ -106,10 +106,10 @@ fn sha256(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Long enough for a busy computer, short enough for a test.
-const SILENCE: std::time::Duration = std::time::Duration::from_secs(3);
+/// The read timeout: long enough for a busy machine, short enough for a test.
+const READ_TIMEOUT: std::time::Duration = std::time::Duration::from_secs(3);
 
-/// What came of a fetch.
+/// The result of a download.
 struct Fetched {
     result: rtbench::Result<(PathBuf, Verified)>,
     events: Vec<Event>,
@@ -121,11 +121,11 @@ fn fetch(answers: Vec<Answer>, hashes: [Option<&str>; 2], folder: &Path) -> Fetc
     let archive =
         Archive { url, sha256: hashes[0].map(str::to_owned), member: "x/mesh.ply".into(), to: "deep/mesh.ply".into() };
     let mut events = Vec::new();
-    let result = fetch_archive("test", &archive, hashes[1], folder, SILENCE, &mut |event| events.push(event));
+    let result = fetch_archive("test", &archive, hashes[1], folder, READ_TIMEOUT, &mut |event| events.push(event));
     Fetched { result, events, ranges: reports.try_iter().collect() }
 }
 
-/// Everything in a folder, with its size.
+/// The relative paths of all files in a folder.
 fn listing(folder: &Path) -> Vec<String> {
     let mut names = Vec::new();
     let mut folders = vec![folder.to_owned()];
@@ -148,7 +148,7 @@ fn refused(fetched: Fetched, words: &str) {
 }
 
 #[test]
-fn a_file_comes_with_whatever_is_known_about_it() {
+fn a_download_reports_how_it_was_verified() {
     let (archive_hash, file_hash) = (sha256(&good()), sha256(&content()));
     for (hashes, verified) in [
         ([Some(archive_hash.as_str()), Some(file_hash.as_str())], Verified::Archive),
@@ -160,7 +160,7 @@ fn a_file_comes_with_whatever_is_known_about_it() {
         let (path, found) = fetched.result.unwrap();
         assert_eq!((path.strip_prefix(folder.path()).unwrap(), found), (Path::new("deep/mesh.ply"), verified));
         assert!(std::fs::read(&path).unwrap() == content());
-        assert_eq!(listing(folder.path()), ["deep/mesh.ply"], "nothing else is left");
+        assert_eq!(listing(folder.path()), ["deep/mesh.ply"], "there is no other file");
         let total = good().len() as u64;
         assert_eq!(fetched.events.first(), Some(&Event::Downloaded(0, Some(total))));
         assert!(fetched.events.contains(&Event::Downloaded(total, Some(total))));
@@ -169,7 +169,7 @@ fn a_file_comes_with_whatever_is_known_about_it() {
 }
 
 #[test]
-fn nothing_is_overwritten() {
+fn no_file_is_overwritten() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::create_dir(folder.path().join("deep")).unwrap();
     std::fs::write(folder.path().join("deep/mesh.ply"), "mine").unwrap();
@@ -178,14 +178,14 @@ fn nothing_is_overwritten() {
 }
 
 #[test]
-fn a_wrong_hash_leaves_nothing() {
+fn a_wrong_hash_leaves_no_file() {
     let wrong = "0".repeat(64);
     for (hashes, what) in
         [([Some(wrong.as_str()), None], "the archive is not"), ([None, Some(wrong.as_str())], "the file is not")]
     {
         let folder = tempfile::tempdir().unwrap();
         let fetched = fetch(vec![Answer::Serve(good())], hashes, folder.path());
-        // With the archive's hash, nothing is even unpacked.
+        // With a wrong hash of the archive, nothing is unpacked.
         assert_eq!(fetched.events.contains(&Event::Unpacking), hashes[0].is_none());
         refused(fetched, what);
         assert!(listing(folder.path()).is_empty());
@@ -193,15 +193,15 @@ fn a_wrong_hash_leaves_nothing() {
 }
 
 #[test]
-fn a_cut_connection_is_continued() {
+fn a_broken_download_is_continued() {
     let folder = tempfile::tempdir().unwrap();
     let cut = 100_000;
     let fetched =
         fetch(vec![Answer::Cut(good(), cut), Answer::Serve(good())], [Some(&sha256(&good())), None], folder.path());
     fetched.result.unwrap();
     assert_eq!(fetched.ranges, [None, Some(format!("bytes={cut}-"))]);
-    assert!(fetched.events.iter().any(|event| matches!(event, Event::Again(_))));
-    // A server that always breaks is given up, what came is kept, and the next call goes on from there.
+    assert!(fetched.events.iter().any(|event| matches!(event, Event::Retry(_))));
+    // If the connection always breaks, the download fails, the received bytes are kept, and the next call continues.
     let folder = tempfile::tempdir().unwrap();
     let broken = vec![
         Answer::Cut(good(), cut),
@@ -218,20 +218,20 @@ fn a_cut_connection_is_continued() {
 }
 
 #[test]
-fn a_server_that_falls_silent_is_left() {
+fn a_stalled_download_times_out() {
     let folder = tempfile::tempdir().unwrap();
     let half = good().len() / 2;
     let answers = vec![Answer::Silent(good(), half), Answer::Serve(good())];
     let fetched = fetch(answers, [Some(&sha256(&good())), None], folder.path());
     assert!(std::fs::read(fetched.result.unwrap().0).unwrap() == content());
     assert_eq!(fetched.ranges, [None, Some(format!("bytes={half}-"))]);
-    let again = |event: &Event| matches!(event, Event::Again(reason) if reason.contains("has sent nothing for 3 s"));
+    let again = |event: &Event| matches!(event, Event::Retry(reason) if reason.contains("has sent nothing for 3 s"));
     assert!(fetched.events.iter().any(again), "{:?}", fetched.events.last());
 }
 
 #[test]
-fn what_cannot_be_continued_begins_again() {
-    // A server that knows no ranges; something left over that is longer than the archive.
+fn a_download_that_cannot_be_continued_starts_again() {
+    // The server does not support ranges; the partial file is longer than the archive.
     for (left, answers) in
         [(100, vec![Answer::Whole(good())]), (500_000, vec![Answer::Serve(good()), Answer::Serve(good())])]
     {
@@ -241,7 +241,7 @@ fn what_cannot_be_continued_begins_again() {
         let fetched = fetch(answers, [Some(&sha256(&good())), None], folder.path());
         assert!(std::fs::read(fetched.result.unwrap().0).unwrap() == content(), "{left}");
     }
-    // What is left over from something else is found out, and not continued twice.
+    // A partial file of another archive is detected, and not continued twice.
     let folder = tempfile::tempdir().unwrap();
     std::fs::create_dir(folder.path().join("deep")).unwrap();
     std::fs::write(folder.path().join("deep/.test.tar.gz.part"), vec![1; 1000]).unwrap();
@@ -250,7 +250,7 @@ fn what_cannot_be_continued_begins_again() {
 }
 
 #[test]
-fn redirects_are_followed_and_refusals_told() {
+fn redirects_are_followed_and_refusals_reported() {
     let folder = tempfile::tempdir().unwrap();
     let (there, _) = server(vec![Answer::Serve(good())]);
     fetch(vec![Answer::Redirect(there)], [Some(&sha256(&good())), None], folder.path()).result.unwrap();

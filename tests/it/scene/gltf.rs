@@ -1,4 +1,4 @@
-//! glTF and GLB: files made here, everything that they may say, everything that may be wrong.
+//! Tests of glTF and GLB with generated files: all supported features, and all errors.
 
 use super::refusal;
 use glam::Vec3;
@@ -8,7 +8,7 @@ use rtbench::scene::{self, Options, Scene, gltf};
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// A triangle in the plane z = 0 with its normals: 3 positions, 3 normals, 3 indices of two bytes, 2 bytes of nothing.
+/// The buffer of a triangle in the plane z = 0: 3 positions, 3 normals, 3 indices of two bytes, 2 bytes of padding.
 fn bytes() -> Vec<u8> {
     let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0f32]];
     let floats: Vec<f32> = corners.into_iter().chain([[0.0, 0.0, 1.0]; 3]).flatten().collect();
@@ -17,7 +17,7 @@ fn bytes() -> Vec<u8> {
     bytes
 }
 
-/// The document that belongs to them.
+/// The document for this buffer.
 fn document() -> Value {
     json!({
         "asset": { "version": "2.0" },
@@ -39,7 +39,7 @@ fn document() -> Value {
     })
 }
 
-/// A document and its buffer in one file.
+/// A GLB of a document and a buffer.
 pub(super) fn glb(document: &Value, bytes: &[u8]) -> Vec<u8> {
     let mut text = document.to_string().into_bytes();
     text.resize(text.len().next_multiple_of(4), b' ');
@@ -49,7 +49,7 @@ pub(super) fn glb(document: &Value, bytes: &[u8]) -> Vec<u8> {
         .concat()
 }
 
-/// Loads a GLB of the usual bytes.
+/// Loads a GLB of a document and the buffer of [`bytes`].
 fn try_load(document: &Value) -> Result<Scene> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.glb");
@@ -61,7 +61,7 @@ fn load(document: &Value) -> Scene {
     try_load(document).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// The document with something put in its place; `place` as in a JSON pointer.
+/// The document with changed values at these JSON pointers.
 fn with(changes: &[(&str, Value)]) -> Value {
     let mut document = document();
     for (place, value) in changes {
@@ -81,7 +81,7 @@ fn positions(scene: &Scene) -> Vec<[f32; 3]> {
 }
 
 #[test]
-fn a_triangle_in_every_kind_of_file() {
+fn all_kinds_of_files_and_buffers_are_read() {
     let scene = load(&document());
     assert_eq!(positions(&scene), [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
     assert!(scene.vertices.iter().all(|v| v.normal == Vec3::Z));
@@ -114,7 +114,7 @@ fn a_triangle_in_every_kind_of_file() {
         ("../b.bin", "outside=yes"),
         ("%2e%2e/b.bin", "outside=yes"),
         ("/etc/passwd", "outside=yes"),
-        ("https://example.org/b.bin", "is an address"),
+        ("https://example.org/b.bin", "is a web address"),
         ("data:text/plain,hello", "not base64"),
         ("data:;base64,!!!", "data URI is broken"),
         ("data:;base64,AAAA", "buffer 0 is truncated: it has 3 bytes of 80"),
@@ -128,11 +128,11 @@ fn a_triangle_in_every_kind_of_file() {
     let message = refusal(load("\u{1}", ""));
     assert!(message.contains("cannot be read"), "{message}");
     std::fs::write(&path, "{\n  \"asset\": { \"version\": 2 }\n}").unwrap();
-    assert!(refusal(scene::load(path.to_str().unwrap())).contains("a.gltf:2: the JSON is no glTF"));
+    assert!(refusal(scene::load(path.to_str().unwrap())).contains("a.gltf:2: the JSON is not glTF"));
 }
 
 #[test]
-fn nodes_place_and_repeat_meshes() {
+fn nodes_transform_and_repeat_meshes() {
     let scene = load(&with(&[(
         "/nodes",
         json!([
@@ -142,19 +142,19 @@ fn nodes_place_and_repeat_meshes() {
             { "mesh": 0, "translation": [99, 99, 99] },
         ]),
     )]));
-    // Node 3 is in no scene.
+    // No scene contains node 3.
     assert_eq!(
         positions(&scene),
         [[10.0, 0.0, 0.0], [12.0, 0.0, 0.0], [10.0, 2.0, 0.0], [10.0, 0.0, 5.0], [10.0, 1.0, 5.0], [9.0, 0.0, 5.0]]
     );
     assert!(scene.vertices.iter().all(|v| v.normal == Vec3::Z));
-    // A mirror turns the winding, so that it still agrees with the normals.
+    // Mirroring inverts the winding, so that it agrees with the normals.
     let mirrored = load(&with(&[("/nodes/0", json!({ "mesh": 0, "scale": [-1, 1, 1] }))]));
     assert_eq!((mirrored.triangles[0].vertices, mirrored.vertices[0].normal), ([0, 2, 1], Vec3::Z));
-    // A transform without inverse leaves positions, and normals to be computed.
+    // With a singular transform, normals are computed.
     let flat = load(&with(&[("/nodes/0", json!({ "mesh": 0, "scale": [1, 1, 0] }))]));
     assert!(flat.vertices.iter().all(|v| v.normal == Vec3::Z));
-    // Without a scene all nodes are shown.
+    // Without a scene all nodes are read.
     let mut document = document();
     document.as_object_mut().unwrap().retain(|key, _| key != "scene" && key != "scenes");
     assert_eq!(load(&document).triangles.len(), 1);
@@ -165,8 +165,8 @@ fn nodes_place_and_repeat_meshes() {
 }
 
 #[test]
-fn strips_fans_and_what_has_no_surface() {
-    // Four corners of a square, by four indices 0, 1, 2, 1.
+fn strips_and_fans_are_read_and_points_and_lines_ignored() {
+    // Four indices: 0, 1, 2, 1
     let mode = |mode: u32| {
         let primitive = json!({ "attributes": { "POSITION": 0, "NORMAL": 1 }, "mode": mode });
         with(&[("/meshes/0/primitives/0", primitive)])
@@ -175,12 +175,12 @@ fn strips_fans_and_what_has_no_surface() {
         assert_eq!(load(&mode(triangles)).triangles[0].vertices, [0, 1, 2], "mode {triangles}");
     }
     for nothing in [0, 1, 2, 3] {
-        assert!(refusal(try_load(&mode(nothing))).contains("shows no triangle"), "mode {nothing}");
+        assert!(refusal(try_load(&mode(nothing))).contains("has no triangles"), "mode {nothing}");
     }
     let lines = json!({ "attributes": { "POSITION": 0 }, "mode": 1 });
     let both = load(&with(&[("/meshes/0/primitives/-", lines.clone()), ("/meshes/0/primitives/-", lines)]));
-    assert_eq!(both.warnings, ["2 primitives that are points or lines skipped"]);
-    // A strip of six indices turns every other triangle round.
+    assert_eq!(both.warnings, ["2 primitives that are points or lines ignored"]);
+    // In a strip every other triangle is inverted.
     let mut long = bytes();
     long.extend([0u8, 1, 2, 1, 0, 2, 0, 0]);
     let mut document = with(&[
@@ -200,12 +200,12 @@ fn strips_fans_and_what_has_no_surface() {
 }
 
 #[test]
-fn normals_are_flat_where_there_are_none_and_sparse_values_replace() {
+fn missing_normals_give_flat_shading_and_sparse_values_replace_elements() {
     let mut document = document();
     document["meshes"][0]["primitives"][0]["attributes"].as_object_mut().unwrap().remove("NORMAL");
     let flat = load(&document);
     assert!(flat.vertices.len() == 3 && flat.vertices.iter().all(|v| v.normal == Vec3::Z) && flat.warnings.is_empty());
-    // Vertex 2 moves to where vertex 1 is doubled: the value is read from the positions themselves.
+    // Vertex 2 is replaced by a sparse value, which is read from the bytes of the positions.
     let sparse = json!({ "count": 1,
         "indices": { "bufferView": 2, "byteOffset": 4, "componentType": 5123 },
         "values": { "bufferView": 1, "byteOffset": 12 } });
@@ -218,7 +218,7 @@ fn normals_are_flat_where_there_are_none_and_sparse_values_replace() {
     zero["accessors"][1]["count"] = json!(1_000_000_000);
     assert!(refusal(try_load(&zero)).contains("more elements than the file can fill"));
     zero["accessors"][1]["count"] = json!(2);
-    assert!(refusal(try_load(&zero)).contains("replaces an element that it does not have"));
+    assert!(refusal(try_load(&zero)).contains("replaces an element beyond its end"));
 }
 
 #[test]
@@ -257,7 +257,8 @@ fn materials_lights_and_cameras() {
     assert!((metal.reflectivity - 0.81).abs() < 1e-6 && metal.diffuse == Vec3::ZERO && metal.exponent == 10_000.0);
     assert_eq!(scene.lights.len(), 3);
     assert_eq!(scene.lights[0].position, Vec3::new(1.0, 2.0, 3.0));
-    // 30 and 10 candela share the half of the point lights; the sun has the other and stands above.
+    // The point lights of 30 and 10 candela share half of the brightness. The directional light has the other half and
+    // is placed above.
     assert!(scene.lights[0].colour.abs_diff_eq(Vec3::new(0.375, 0.1875, 0.0), 1e-6), "{:?}", scene.lights);
     assert!(scene.lights[1].colour.abs_diff_eq(Vec3::splat(0.125), 1e-6));
     assert!(scene.lights[2].colour == Vec3::splat(0.5) && scene.lights[2].position.y > 10.0, "{:?}", scene.lights);
@@ -266,7 +267,7 @@ fn materials_lights_and_cameras() {
     let pose = camera.frames[0];
     assert_eq!(pose.position, Vec3::new(0.0, 0.0, 9.0));
     assert!(pose.direction.abs_diff_eq(Vec3::Z, 1e-6) && pose.up.abs_diff_eq(Vec3::Y, 1e-6));
-    // The first camera, or the one that is named
+    // The first camera is used, or the one that is named.
     let document = with(&[
         ("/cameras", json!([{ "name": "lens", "type": "perspective", "perspective": { "yfov": 1, "znear": 0.1 } }])),
         ("/nodes/0", json!({ "mesh": 0, "children": [1, 2] })),
@@ -281,8 +282,8 @@ fn materials_lights_and_cameras() {
         assert_eq!(named(camera).unwrap().camera.unwrap().frames[0].position.z, z, "{camera:?}");
     }
     let error = named(Some("front")).unwrap_err().to_string();
-    assert!(error.contains("there is no camera `front`"), "{error}");
-    // What shines is a light where there is no other.
+    assert!(error.contains("there is no valid perspective camera `front`"), "{error}");
+    // Emissive surfaces become lights if there are no other lights.
     let lamp = load(&with(&[
         ("/materials", json!([{ "emissiveFactor": [1, 1, 0.5] }])),
         ("/meshes/0/primitives/0/material", json!(0)),
@@ -295,7 +296,7 @@ fn materials_lights_and_cameras() {
 }
 
 #[test]
-fn what_is_broken_is_refused() {
+fn invalid_files_are_refused() {
     for (changes, words) in [
         (("/buffers/0/byteLength", json!(81)), "buffer 0 is truncated: it has 80 bytes of 81"),
         (("/bufferViews/0/byteOffset", json!(60)), "buffer view 0 reaches beyond its buffer"),
@@ -304,7 +305,7 @@ fn what_is_broken_is_refused() {
         (("/bufferViews/0/byteStride", json!(4)), "accessor 0 reaches beyond its buffer view"),
         (("/accessors/0/count", json!(1_000_000_000_000u64)), "accessor 0 reaches beyond its buffer view"),
         (("/accessors/0/byteOffset", json!(u64::MAX)), "accessor 0 reaches beyond its buffer view"),
-        (("/accessors/1/count", json!(2)), "not as many normals as positions"),
+        (("/accessors/1/count", json!(2)), "different numbers of normals and positions"),
         (("/accessors/1/componentType", json!(5123)), "accessor 1 must have three floats"),
         (("/accessors/0/type", json!("VEC2")), "accessor 0 must have three floats"),
         (("/accessors/2/componentType", json!(5126)), "accessor 2 must hold unsigned integers"),
@@ -313,12 +314,12 @@ fn what_is_broken_is_refused() {
         (("/bufferViews/2/byteOffset", json!(68)), "a primitive uses vertex"),
         (("/meshes/0/primitives/0/attributes", json!({})), ""),
         (("/meshes/0/primitives/0/indices", json!(7)), "faults, the first"),
-        (("/accessors", json!([])), "accessor 0, which is not there"),
+        (("/accessors", json!([])), "accessor 0, which does not exist"),
         (("/nodes/0/mesh", json!(1)), "faults, the first"),
         (("/nodes/0/scale", json!([1e38, 1e38, 1e38])), ""),
         (
             ("/extensionsRequired", json!(["KHR_lights_punctual", "X_y"])),
-            "requires the extension X_y, which is not read",
+            "requires the extension X_y, which is not supported",
         ),
     ] {
         let (place, value) = changes;
@@ -333,7 +334,7 @@ fn what_is_broken_is_refused() {
 }
 
 #[test]
-fn other_versions_and_compression_are_named_first() {
+fn other_versions_and_compression_are_reported_first() {
     for (version, least, read) in [
         ("2.0", None, true),
         ("2.1", None, true),
@@ -350,7 +351,7 @@ fn other_versions_and_compression_are_named_first() {
         }
         match try_load(&document) {
             Ok(_) => assert!(read, "{version} {least:?}"),
-            Err(error) => assert!(!read && error.to_string().contains("only 2.0 is read"), "{version}: {error}"),
+            Err(error) => assert!(!read && error.to_string().contains("only 2.0 is supported"), "{version}: {error}"),
         }
     }
     let folder = tempfile::tempdir().unwrap();
@@ -358,8 +359,8 @@ fn other_versions_and_compression_are_named_first() {
     std::fs::write(&path, r#"{"asset": {"version": "1.0"}, "buffers": {"b": {"uri": "b.bin"}}, "meshes": {}}"#)
         .unwrap();
     let message = refusal(scene::load(path.to_str().unwrap()));
-    assert!(message.contains("old.gltf: this is glTF of version 1.0, only 2.0 is read"), "{message}");
-    // As compressed files are: accessors without data
+    assert!(message.contains("old.gltf: this is glTF of version 1.0, only 2.0 is supported"), "{message}");
+    // Compressed files have accessors without data.
     let mut document = with(&[("/extensionsRequired", json!(["KHR_draco_mesh_compression"]))]);
     for accessor in document["accessors"].as_array_mut().unwrap() {
         accessor.as_object_mut().unwrap().remove("bufferView");
@@ -368,13 +369,13 @@ fn other_versions_and_compression_are_named_first() {
     assert!(message.contains("KHR_draco_mesh_compression") && message.contains("gltf-transform"), "{message}");
     let sound = glb(&document, &bytes());
     let read = |bytes: &[u8]| refusal(gltf::read_bytes(Path::new("a.glb"), bytes, &Options::default()));
-    assert!(read(&sound[..sound.len() - 1]).contains("the file is cut off: it has"));
-    assert!(read(&sound[..10]).contains("the file is cut off within its header"));
+    assert!(read(&sound[..sound.len() - 1]).contains("the file is truncated: it has"));
+    assert!(read(&sound[..10]).contains("the file is truncated within its header"));
     assert!(read(&[&sound[..4], &[1, 0, 0, 0], &sound[8..]].concat()).contains("a GLB of version 1"));
 }
 
 #[test]
-fn what_is_not_shown_is_told() {
+fn ignored_features_give_warnings() {
     let material = |mode: &str, alpha: f32| {
         with(&[
             (
@@ -387,16 +388,16 @@ fn what_is_not_shown_is_told() {
     for (mode, alpha, told) in
         [("BLEND", 0.5, true), ("MASK", 0.5, true), ("OPAQUE", 0.5, false), ("BLEND", 1.0, false)]
     {
-        let expected: &[&str] = if told { &["transparent material: shown opaque"] } else { &[] };
+        let expected: &[&str] = if told { &["transparent material: rendered opaque"] } else { &[] };
         assert_eq!(load(&material(mode, alpha)).warnings, expected, "{mode} {alpha}");
     }
     let coloured = with(&[("/meshes/0/primitives/0/attributes/COLOR_0", json!(1))]);
-    assert_eq!(load(&coloured).warnings, ["vertex colours passed over"]);
+    assert_eq!(load(&coloured).warnings, ["vertex colours ignored"]);
 }
 
 #[cfg(unix)]
 #[test]
-fn links_do_not_lead_out_of_the_folder() {
+fn links_to_files_outside_of_the_folder_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::create_dir(folder.path().join("in")).unwrap();
     std::fs::write(folder.path().join("out.bin"), bytes()).unwrap();
@@ -411,7 +412,7 @@ fn links_do_not_lead_out_of_the_folder() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 3000, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Whatever is changed, cut or put in: a scene that keeps the invariants, or one error; no panic.
+    /// A file with changed, removed or inserted bytes gives a valid scene or one error, and does not panic.
     #[test]
     fn mutated_files_never_panic(
         changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..4u8), 1..5),
@@ -451,11 +452,11 @@ proptest! {
     }
 }
 
-/// Found by fuzzing: a length that leaves no room for the header it stands in.
+/// Found by fuzzing: the length in the header is smaller than the header.
 #[test]
 fn a_glb_shorter_than_its_header_is_refused() {
     let mut bytes = glb(&document(), &bytes());
     bytes[8..12].copy_from_slice(&11u32.to_le_bytes());
     let message = refusal(gltf::read_bytes(Path::new("a.glb"), &bytes, &Options::default()));
-    assert!(message.contains("its length is given as 11"), "{message}");
+    assert!(message.contains("its header gives the length 11"), "{message}");
 }

@@ -1,4 +1,4 @@
-//! Open Inventor and VRML 1.0: what each node makes, and the real fixtures with counts worked out by hand.
+//! Tests of Open Inventor and VRML 1.0: each node, and the real fixtures with counts determined by hand.
 
 use super::{Files, real_scenes, refusal};
 use glam::Vec3;
@@ -11,13 +11,13 @@ pub(super) fn iv(text: &str) -> Scene {
     files.load("main.iv").unwrap_or_else(|error| panic!("{text}: {error}"))
 }
 
-/// Positions of the corners of a triangle.
+/// The positions of a triangle's corners.
 pub(super) fn corners(scene: &Scene, triangle: usize) -> [Vec3; 3] {
     scene.triangles[triangle].vertices.map(|v| scene.vertices[v as usize].position)
 }
 
-pub(super) fn near(found: Vec3, expected: [f32; 3], what: &str) {
-    assert!((found - Vec3::from(expected)).abs().max_element() < 1e-4, "{what}: {found}, not {expected:?}");
+pub(super) fn near(found: Vec3, expected: [f32; 3], label: &str) {
+    assert!((found - Vec3::from(expected)).abs().max_element() < 1e-4, "{label}: {found}, not {expected:?}");
 }
 
 /// The material of every triangle.
@@ -25,7 +25,7 @@ pub(super) fn materials(scene: &Scene) -> Vec<Material> {
     scene.triangles.iter().map(|triangle| scene.materials[triangle.material as usize]).collect()
 }
 
-/// Diffuse colours of all triangles, a letter for each: white if all are 1, black if all are 0, `?` for what is none.
+/// A letter for the diffuse colour of each triangle: r, g, b or w(hite); `?` for other colours.
 pub(super) fn colours(scene: &Scene) -> String {
     let letter = |m: &Material| match m.diffuse.to_array() {
         [1.0, 0.0, 0.0] => 'r',
@@ -37,24 +37,24 @@ pub(super) fn colours(scene: &Scene) -> String {
     materials(scene).iter().map(letter).collect()
 }
 
-/// Every triangle's normals are on the side from which it turns counter-clockwise.
-pub(super) fn faces_out(scene: &Scene, what: &str) {
+/// Asserts that the normals of all triangles are on the side from which the triangle is counter-clockwise.
+pub(super) fn faces_out(scene: &Scene, label: &str) {
     for t in &scene.triangles {
         let [a, b, c] = t.vertices.map(|v| scene.vertices[v as usize]);
         let turn = (b.position - a.position).cross(c.position - a.position);
         for vertex in [a, b, c] {
-            assert!(vertex.normal.is_normalized() && vertex.normal.dot(turn) > 0.0, "{what}: {vertex:?} {turn}");
+            assert!(vertex.normal.is_normalized() && vertex.normal.dot(turn) > 0.0, "{label}: {vertex:?} {turn}");
         }
     }
 }
 
-/// A square in the plane z = 0 and a point above its middle, and faces of them.
+/// Coordinates of a square in the plane z = 0 and a point above its centre, and faces of them.
 pub(super) const POINTS: &str = "Coordinate3 { point [ 0 0 0, 1 0 0, 1 1 0, 0 1 0, .5 .5 1 ] }\n";
 pub(super) const PYRAMID: &str =
     "IndexedFaceSet { coordIndex [ 3, 2, 1, 0, -1, 0, 1, 4, -1, 1, 2, 4, -1, 2, 3, 4, -1, 3, 0, 4, -1 ] }";
 
 #[test]
-fn solids_have_the_formats_sizes_and_look_outward() {
+fn solids_have_their_default_sizes_and_face_outwards() {
     for (text, triangles, vertices, min, max) in [
         ("Cube {}", 12, 24, [-1., -1., -1.], [1., 1., 1.]),
         ("Cube { width 1 height 4. depth .5 }", 12, 24, [-0.5, -2., -0.25], [0.5, 2., 0.25]),
@@ -77,7 +77,7 @@ fn solids_have_the_formats_sizes_and_look_outward() {
 }
 
 #[test]
-fn transforms_apply_from_the_innermost_outwards_and_matrices_are_rows() {
+fn the_innermost_transform_is_applied_first_and_matrices_are_by_rows() {
     let triangle = "FaceSet { vertexProperty VertexProperty { vertex [ 0 0 0, 1 0 0, 0 1 0 ] } }";
     for (text, expected) in [
         (
@@ -86,13 +86,13 @@ fn transforms_apply_from_the_innermost_outwards_and_matrices_are_rows() {
         ),
         ("Rotation { rotation 0 2 0 1.57079633 }", [[0., 0., 0.], [0., 0., -1.], [0., 1., 0.]]),
         ("Rotation { rotation 0 0 0 2 }", [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]]),
-        // About the center (1, 0, 0): a scale by two along y, since its axes are turned, then a quarter turn
+        // Around the centre (1, 0, 0): scaling by two along y, because its axes are rotated, then a quarter turn
         (
             "Transform { translation 10 0 0 rotation 0 0 1 1.57079633 scaleFactor 2 1 1 \
              scaleOrientation 0 0 1 1.57079633 center 1 0 0 }",
             [[11., -1., 0.], [11., 0., 0.], [9., -1., 0.]],
         ),
-        // As the format's own library has it
+        // As in the reference implementation
         (
             "Transform { translation 10 0 0 rotation 0 0 1 1.57079633 scaleFactor 2 1 1 scaleOrientation 0 0 1 .5 center 1 0 0 }",
             [[11.4207, -1.77015, 0.], [11., 0., 0.], [10.1909, -1.34942, 0.]],
@@ -101,7 +101,7 @@ fn transforms_apply_from_the_innermost_outwards_and_matrices_are_rows() {
         ("Units { units CENTIMETERS }", [[0., 0., 0.], [0.01, 0., 0.], [0., 0.01, 0.]]),
         ("Units { units FEET } Units { units METERS }", [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]]),
         ("Scale { scaleFactor 7 7 7 } ResetTransform {}", [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]]),
-        // A field that is to be ignored, and one that moves
+        // An ignored field, and a connected field
         ("Translation { translation 9 9 9 ~ }", [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]]),
         ("Translation { translation 0 0 1 = Calculator { a 3 } . oA }", [[0., 0., 1.], [1., 0., 1.], [0., 1., 1.]]),
     ] {
@@ -113,7 +113,7 @@ fn transforms_apply_from_the_innermost_outwards_and_matrices_are_rows() {
 }
 
 #[test]
-fn separators_save_what_groups_leak() {
+fn separators_restore_the_state_and_groups_do_not() {
     let sized = |text: &str| iv(text).bounds();
     let inner = "Scale { scaleFactor 3 3 3 } BaseColor { rgb 1 0 0 }";
     assert_eq!(sized(&format!("Separator {{ {inner} }} Cube {{}}")).max, Vec3::ONE);
@@ -125,7 +125,7 @@ fn separators_save_what_groups_leak() {
 }
 
 #[test]
-fn switches_levels_and_copies_choose_what_is_shown() {
+fn switches_levels_and_copies_select_their_children() {
     let solids = "Cube {} Sphere {} Cone {}";
     for (text, triangles) in [
         ("Switch { whichChild 0 SOLIDS } Cube {}".to_owned(), 24),
@@ -133,7 +133,7 @@ fn switches_levels_and_copies_choose_what_is_shown() {
         ("Switch { SOLIDS } Cube {}".to_owned(), 12),
         ("Switch { whichChild -1 SOLIDS } Cube {}".to_owned(), 12),
         ("Switch { whichChild -3 SOLIDS }".to_owned(), 12 + 528 + 48),
-        // The inner one takes over the outer one's choice, and starts again where it has fewer
+        // The inner switch inherits the index of the outer one, modulo its number of children.
         ("Switch { whichChild 2 Cube {} Cube {} Switch { whichChild -2 SOLIDS } }".to_owned(), 48),
         ("Switch { whichChild 2 Cube {} Cube {} Switch { whichChild -2 Sphere {} Cube {} } }".to_owned(), 528),
         ("Switch { whichChild 7 SOLIDS } Cube {}".to_owned(), 12),
@@ -159,7 +159,7 @@ fn switches_levels_and_copies_choose_what_is_shown() {
 }
 
 #[test]
-fn lights_and_the_first_camera_stand_where_transforms_put_them() {
+fn lights_and_the_first_camera_are_transformed() {
     let scene = iv("Translation { translation 0 10 0 } PointLight { location 1 2 3 intensity .5 color 1 .5 0 } \
          SpotLight { location 0 0 0 } PointLight { on FALSE } \
          RotationXYZ { axis X angle -1.57079633 } DirectionalLight { intensity .25 } \
@@ -169,7 +169,7 @@ fn lights_and_the_first_camera_stand_where_transforms_put_them() {
     near(scene.lights[0].position, [1., 12., 3.], "point light");
     near(scene.lights[0].colour, [0.5, 0.25, 0.], "its colour");
     near(scene.lights[1].position, [0., 10., 0.], "spot light");
-    // It shines along -z, turned to -y: so it stands above, at ten diagonals
+    // The light shines along -z, rotated to -y; it is therefore placed above, at ten diagonals.
     near(scene.lights[2].position / (10.0 * 12f32.sqrt()), [0., 1., 0.], "directional light");
     near(scene.lights[2].colour, [0.25; 3], "its colour");
     let camera = scene.camera.as_ref().unwrap();
@@ -177,7 +177,7 @@ fn lights_and_the_first_camera_stand_where_transforms_put_them() {
     near(camera.frames[0].position, [0., 15., 0.], "camera");
     near(camera.frames[0].direction, [0., -1., 0.], "looks down");
     near(camera.frames[0].up, [0., 0., -1.], "its up");
-    assert_eq!(scene.warnings, ["OrthographicCamera left out", "spot light: shines to all sides"]);
+    assert_eq!(scene.warnings, ["OrthographicCamera ignored", "spot light: shines in all directions"]);
     let scene = iv("PerspectiveCamera { orientation 0 1 0 1.57079633 } Cube {}");
     let camera = scene.camera.unwrap();
     assert!((camera.field_of_view - 45.0).abs() < 1e-3);
@@ -186,17 +186,17 @@ fn lights_and_the_first_camera_stand_where_transforms_put_them() {
 }
 
 #[test]
-fn unknown_nodes_are_passed_over_whole_and_named_once() {
+fn unknown_nodes_are_ignored_with_their_children_and_reported_once() {
     let scene = iv(
         "DEF x Hologram { fields [ SFFloat a, MFNode b ] isA \"Cube\" a 3 b [ Cube {} Sphere { } ] Cube { width 5 } }\n\
         Hologram {} USE x Text3 { string \"}\" } Info { string \"{\" } # }\n Cube {}",
     );
     assert_eq!(scene.triangles.len(), 12);
-    assert_eq!(scene.warnings, ["unknown node `Hologram` passed over (2 times)", "Text3 left out"]);
+    assert_eq!(scene.warnings, ["unknown node `Hologram` ignored (2 times)", "Text3 ignored"]);
 }
 
 #[test]
-fn includes_take_over_the_state_and_keep_theirs() {
+fn includes_inherit_the_state_and_do_not_change_it() {
     let files = Files::new(&[
         (
             "main.iv",
@@ -217,7 +217,7 @@ fn includes_take_over_the_state_and_keep_theirs() {
         ("\n\nFile { name \"none.iv\" }", "main.iv:4: include `none.iv`: no such file"),
         ("File { name \"../outside.iv\" }", "lies outside of the scene's folder"),
         ("File { name \"bad.iv\" }", "bad.iv:3: coordIndex: index 4 is out of range"),
-        ("Group { File { name \"deep.iv\" } }", "inside each other"),
+        ("Group { File { name \"deep.iv\" } }", "nested more than"),
     ] {
         let deep = format!("{HEADER}{}{}", "Group {".repeat(199), "}".repeat(199));
         let files = Files::new(&[
@@ -235,12 +235,12 @@ fn includes_take_over_the_state_and_keep_theirs() {
         assert!(message.contains(words), "{text}: {message}");
     }
     let scene = iv("File { name \"http://example.org/x.iv\" } File {} Cube {}");
-    assert_eq!(scene.warnings, ["includes from the network left out", "include without a file's name left out"]);
+    assert_eq!(scene.warnings, ["includes from the network ignored", "include without a file name ignored"]);
 }
 
-/// Of these, `chair` and `table` are binary and `text` has nothing but a cube behind its text.
+/// The fixtures `chair` and `table` are binary, and `text` has only a cube after its text.
 #[test]
-fn the_real_fixtures_have_the_counts_worked_out_by_hand() {
+fn the_real_fixtures_have_the_counts_determined_by_hand() {
     let Some(folder) = real_scenes("the_real_fixtures_have_the_counts_worked_out_by_hand") else { return };
     let load = |name: &str| scene::load(folder.join(format!("fixtures/iv/{name}.iv")).to_str().unwrap());
     for (name, triangles, lights) in [
@@ -250,12 +250,12 @@ fn the_real_fixtures_have_the_counts_worked_out_by_hand() {
         ("cylinder", 48 + 24 + 24, 0),
         ("tet", 4, 0),
         ("10by10", 10 * 10 * 2, 0),
-        // Three arrowheads; lines and letters are left out
+        // Three arrowheads; lines and letters are ignored.
         ("axis", 3 * (24 + 24), 0),
-        // Six squares; two sets of six squares
+        // Six squares, and two sets of six squares
         ("faceSet", 6 * 2, 0),
         ("indexedFaceSet", 2 * 6 * 2, 0),
-        // Three strips of eight corners, the second time as lines; four squares by four
+        // Three strips of eight corners, which are repeated as lines, and four by four squares
         ("indexedTriangleMesh", 3 * 6, 0),
         ("triangleStripSet", 3 * 6, 0),
         ("quadMesh", 4 * 4 * 2, 0),
@@ -267,7 +267,7 @@ fn the_real_fixtures_have_the_counts_worked_out_by_hand() {
         ("text3", 12, 0),
         // Cube, cylinder, cone, a square, sphere
         ("texture", 12 + 96 + 48 + 2 + 528, 0),
-        // Twelve pentagons; the two other models are drawn as lines
+        // Twelve pentagons; the two other models are drawn as lines.
         ("three", 12 * 3, 0),
     ] {
         let scene = load(name).unwrap();

@@ -1,11 +1,11 @@
-//! Open Inventor: sets of faces, and how materials and normals are bound to them.
+//! Tests of Open Inventor: face sets, and the binding of materials and normals.
 
 use super::Files;
 use super::inventor::{POINTS, PYRAMID, colours, corners, faces_out, iv, materials, near};
 use glam::{DVec3, Vec3};
 
 #[test]
-fn sets_of_faces_share_one_meaning() {
+fn all_kinds_of_face_sets_give_the_same_faces() {
     let square = "vertexProperty VertexProperty { vertex [ 9 9 9, 0 0 0, 1 0 0, 0 1 0, 1 1 0, 0 2 0, 1 2 0 ] }";
     for (text, triangles) in [
         (format!("{POINTS}{PYRAMID}"), 2 + 4),
@@ -22,27 +22,27 @@ fn sets_of_faces_share_one_meaning() {
         let scene = iv(&text);
         assert_eq!(scene.triangles.len(), triangles, "{text}");
         if !text.contains("{ vertexP") {
-            // All but the face of every point there is, which runs into itself
+            // All except the face of all points, which intersects itself
             faces_out(&scene, &text);
         }
     }
-    // A corner has the normal of its coordinate, also where the set does not begin with the first
+    // A corner has the normal of its coordinate, even if the set does not begin with the first coordinate.
     let normals = "Normal { vector [ 0 0 1, 0 1 0, 1 0 0, 0 0 -1 ] } NormalBinding { value PER_VERTEX }";
     let scene = iv(&format!("{normals}{POINTS}FaceSet {{ startIndex 1 numVertices 3 }}"));
     assert_eq!(scene.triangles[0].vertices.map(|v| scene.vertices[v as usize].normal), [Vec3::Y, Vec3::X, Vec3::NEG_Z]);
-    // A strip's triangles all turn the same way; turned around, they turn the other way
+    // All triangles of a strip have the same orientation, which CLOCKWISE inverts.
     for (hints, z) in [("", 1.0), ("ShapeHints { vertexOrdering CLOCKWISE }", -1.0)] {
         let scene = iv(&format!("{hints} TriangleStripSet {{ startIndex 1 {square} }}"));
         assert!(scene.vertices.iter().all(|v| v.normal == Vec3::Z * z), "{hints}: {:?}", scene.vertices);
         faces_out(&scene, hints);
     }
     let mesh = iv(&format!("QuadMesh {{ startIndex 1 verticesPerColumn 3 verticesPerRow 2 {square} }}"));
-    assert_eq!(mesh.vertices.len(), 6, "flat: corners are shared");
+    assert_eq!(mesh.vertices.len(), 6, "coplanar faces share vertices");
     near(corners(&iv("Coordinate4 { point [ 0 0 0 2, 2 0 0 2, 2 2 0 2 ] } FaceSet {}"), 0)[2], [1., 1., 0.], "divided");
 }
 
 #[test]
-fn materials_are_bound_as_the_file_says() {
+fn material_bindings_are_applied() {
     let rgb = "BaseColor { rgb [ 1 0 0, 0 1 0, 0 0 1, 1 1 1 ] } ";
     let bound = |binding: &str, shape: &str| {
         colours(&iv(&format!("{rgb}{POINTS}MaterialBinding {{ value {binding} }} {shape}")))
@@ -50,12 +50,12 @@ fn materials_are_bound_as_the_file_says() {
     let faces = |indices: &str| PYRAMID.replace(" ] }", &format!(" ] materialIndex [ {indices} ] }}"));
     assert_eq!(bound("OVERALL", PYRAMID), "rrrrrr");
     assert_eq!(bound("DEFAULT", PYRAMID), "rrrrrr");
-    // Five faces of four materials: the fifth has the first again
+    // There are five faces and four materials: the fifth face has the first material.
     assert_eq!(bound("PER_FACE", PYRAMID), "rrgbwr");
     assert_eq!(bound("PER_PART", PYRAMID), "rrgbwr");
     assert_eq!(bound("PER_FACE_INDEXED", &faces("3 3 2 1 0")), "wwwbgr");
-    assert_eq!(bound("PER_FACE", &faces("3 3 2 1 0")), "rrgbwr", "indices that do not count");
-    // Without indices of their own, faces go by coordIndex, number by number, as in the format's own library
+    assert_eq!(bound("PER_FACE", &faces("3 3 2 1 0")), "rrgbwr", "PER_FACE ignores indices");
+    // Without materialIndex, faces use the entries of coordIndex, as in the reference implementation.
     assert_eq!(bound("PER_FACE_INDEXED", "IndexedFaceSet { coordIndex [ 2 1 0 -1 0 1 2 -1 1 2 3 ] }"), "bgr");
     let vertices = "0 0 0 0 -1 1 1 1 -1 2 2 2 -1 3 3 3 -1 0 1 2 -1";
     assert_eq!(bound("PER_VERTEX_INDEXED", &faces(vertices)), "rrgbw?");
@@ -70,13 +70,13 @@ fn materials_are_bound_as_the_file_says() {
     let mesh = "QuadMesh { verticesPerColumn 3 verticesPerRow 2 vertexProperty VertexProperty { \
         vertex [ 0 0 0, 1 0 0, 0 1 0, 1 1 0, 0 2 0, 1 2 0 ] } }";
     assert_eq!(bound("PER_PART", mesh), "rrgg");
-    // Corners of different colours: their mean, and the user is told
+    // Corners with different colours give their mean, and a warning.
     let scene = iv(&format!(
         "{rgb}MaterialBinding {{ value PER_VERTEX }} FaceSet {{ vertexProperty VertexProperty {{ vertex [ 0 0 0, 1 0 0, 0 1 0 ] }} }}"
     ));
     near(scene.materials[0].diffuse, [1. / 3.; 3], "mean");
-    assert_eq!(scene.warnings, ["colours bound to corners: a face has their mean"]);
-    // Those of a vertex property go before, if there are any
+    assert_eq!(scene.warnings, ["colours bound to corners: a face has the mean of its corners"]);
+    // The colours of a vertex property have precedence, if there are any.
     let own = |colours: &str| {
         format!(
             "{rgb}MaterialBinding {{ value PER_FACE }} FaceSet {{ numVertices [ 3 3 ] vertexProperty VertexProperty {{ \
@@ -89,15 +89,15 @@ fn materials_are_bound_as_the_file_says() {
     assert_eq!(
         colours(&iv("PackedColor { rgba 0xff0000ff } Cube {}")),
         "r".repeat(12),
-        "V2.0 has them the other way round"
+        "V2.0 has the opposite byte order"
     );
 }
 
 #[test]
-fn materials_have_the_formats_defaults_and_light() {
+fn materials_have_their_defaults_and_ambient_light() {
     let only = |text: &str| iv(&format!("{text} Cube {{}}")).materials[0];
     let plain = only("");
-    near(plain.ambient, [0.04; 3], "a fifth of a fifth");
+    near(plain.ambient, [0.04; 3], "ambientColor 0.2 times ambient light 0.2");
     near(plain.diffuse, [0.8; 3], "default");
     assert_eq!((plain.specular, plain.reflectivity), (Vec3::ZERO, 0.0));
     assert!((plain.exponent - 25.6).abs() < 1e-4);
@@ -105,13 +105,13 @@ fn materials_have_the_formats_defaults_and_light() {
         "Environment { ambientIntensity .5 ambientColor 1 0 0 } Material { ambientColor .4 .4 .4 diffuseColor .1 .2 .3 \
          specularColor .5 .6 .7 emissiveColor 0 .25 0 shininess 1 }",
     );
-    near(full.ambient, [0.2, 0.25, 0.], "ambient light and its own");
+    near(full.ambient, [0.2, 0.25, 0.], "ambient light plus emission");
     near(full.diffuse, [0.1, 0.2, 0.3], "diffuse");
     near(full.specular, [0.5, 0.6, 0.7], "specular");
     assert_eq!((full.exponent, full.reflectivity), (128.0, 0.0));
     let unlit = only("LightModel { model BASE_COLOR } BaseColor { rgb 1 .5 0 }");
     assert_eq!((unlit.ambient, unlit.diffuse, unlit.specular), (Vec3::new(1.0, 0.5, 0.0), Vec3::ZERO, Vec3::ZERO));
-    // A material sets what it does not mention as well, unless it is told to ignore it; lists start again
+    // Absent fields of a material have their defaults, unless they are ignored (`~`); lists are repeated.
     near(only("BaseColor { rgb 1 0 0 } Material { shininess 1 }").diffuse, [0.8; 3], "set again");
     near(only("BaseColor { rgb 1 0 0 } Material { diffuseColor 0 1 0 ~ }").diffuse, [1., 0., 0.], "ignored");
     near(only("BaseColor { rgb 1 0 0 } Material { diffuseColor ~ }").diffuse, [1., 0., 0.], "ignored");
@@ -131,14 +131,14 @@ fn materials_have_the_formats_defaults_and_light() {
     assert_eq!(
         clear.warnings,
         [
-            "transparent material: shown opaque (6 times)",
-            "shape drawn as lines, as points or not at all left out (2 times)"
+            "transparent material: rendered opaque (6 times)",
+            "shape with a draw style other than FILLED ignored (2 times)"
         ]
     );
 }
 
 #[test]
-fn normals_are_bound_or_made() {
+fn normals_are_bound_or_computed() {
     let normals = "Normal { vector [ 0 0 -1, 0 -1 1, 1 0 1, 0 1 1, -1 0 1 ] } ";
     let of = |text: &str| {
         let scene = iv(text);
@@ -160,24 +160,24 @@ fn normals_are_bound_or_made() {
         near(found[5][2], [-0.5f32.sqrt(), 0., 0.5f32.sqrt()], binding);
         assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
     }
-    // By default corners have the normals of their coordinates, and share vertices
+    // By default corners have the normals of their coordinates, and share vertices.
     let (found, scene) = of(&format!("{normals}{POINTS}{PYRAMID}"));
     assert_eq!((scene.vertices.len(), found[2][0], found[0][2]), (5, Vec3::NEG_Z, found[2][1]));
     let (found, _) = of(&format!("{normals}NormalBinding {{ value OVERALL }} {POINTS}{PYRAMID}"));
     assert!(found.iter().flatten().all(|&normal| normal == Vec3::NEG_Z));
-    // One by one: 4 + 3 * 4 corners, and so 16 normals, are needed
+    // With PER_VERTEX, 4 + 3 * 4 corners need 16 normals.
     let (_, scene) = of(&format!("{normals}NormalBinding {{ value PER_VERTEX }} {POINTS}{PYRAMID}"));
-    assert_eq!(scene.warnings, ["fewer normals than are bound: others made"]);
+    assert_eq!(scene.warnings, ["fewer normals than bindings: normals are computed"]);
     faces_out(&scene, "made");
-    assert_eq!(scene.vertices.len(), 4 + 4 * 3, "V2.1 makes none smooth");
-    // Normals of neighbouring sides are 1.37 apart, of a side and the base 2.03, of sides across 2.21
+    assert_eq!(scene.vertices.len(), 4 + 4 * 3, "the crease angle of V2.1 is 0");
+    // The angles between normals are 1.37 for adjacent sides, 2.03 for a side and the base, 2.21 for opposite sides.
     for (angle, vertices) in [("1.3", 16), ("1.4", 4 + 4 + 4), ("2.1", 4 + 4), ("2.3", 5)] {
         let (found, scene) = of(&format!("ShapeHints {{ creaseAngle {angle} }} {POINTS}{PYRAMID}"));
         assert_eq!(scene.vertices.len(), vertices, "{angle}");
         let up = found[2][2];
         assert!((up.z > 0.9999) == (angle == "2.3"), "{angle}: {up}");
     }
-    // VRML 1.0 smooths half a radian
+    // The crease angle of VRML 1.0 is 0.5.
     let bent = "Coordinate3 { point [ 0 0 0, 1 0 0, 1 1 0, 0 1 0, 1 2 .3, 0 2 .3 ] } \
         IndexedFaceSet { coordIndex [ 0 1 2 3 -1 3 2 4 5 -1 ] }";
     for (header, vertices) in [("#VRML V1.0 ascii", 6), ("#Inventor V2.0 ascii", 8), ("#Inventor V2.1 ascii", 8)] {
@@ -186,9 +186,9 @@ fn normals_are_bound_or_made() {
     }
 }
 
-/// Every corner of a bumpy surface has the normal that the definition gives, with creases here and none there.
+/// Every corner of a bumpy surface has the normal by the definition, with and without creases.
 #[test]
-fn creases_are_where_the_definition_has_them() {
+fn creases_agree_with_the_definition() {
     const SIDE: usize = 12;
     let height =
         |i: usize| ((i * 7919 + i / 5 * 104_729) % 97) as f64 / 97.0 * if i % SIDE < SIDE / 2 { 0.1 } else { 1.5 };

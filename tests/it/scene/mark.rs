@@ -1,4 +1,4 @@
-//! A byte order mark at the beginning of a text file: nothing of the file, whatever its format.
+//! Tests of byte order marks: readers of all text formats ignore a mark at the beginning of a file.
 
 use super::ply::CUBE;
 use super::{Files, refusal};
@@ -7,7 +7,8 @@ use rtbench::scene::Scene;
 
 const MARK: &str = "\u{feff}";
 
-/// A file of each text format. Where the first line counts (a vertex, a material, an entity), a mark must not take it away.
+/// A file of each text format. The first line is needed (a vertex, a material, an entity), so that a mark must not hide
+/// it.
 fn texts() -> Vec<(&'static str, String)> {
     let buffer = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0f32]].as_flattened();
     let buffer = base64::engine::general_purpose::STANDARD.encode(bytemuck::cast_slice::<f32, u8>(buffer));
@@ -39,12 +40,12 @@ fn same(marked: &Scene, plain: &Scene, name: &str) {
 }
 
 #[test]
-fn is_passed_over_in_every_format() {
+fn a_mark_is_ignored_in_every_format() {
     for (name, text) in texts() {
         let load = |text: &str| Files::new(&[(name, text)]).load(name);
         let plain = load(&text).unwrap_or_else(|error| panic!("{name}: {error}"));
         same(&load(&format!("{MARK}{text}")).unwrap_or_else(|error| panic!("{name}: {error}")), &plain, name);
-        // Only once, and only at the beginning
+        // A mark is ignored only once, and only at the beginning.
         assert!(
             load(&format!("{MARK}{MARK}{text}")).is_err() || name.ends_with("obj") || name.ends_with("mgf"),
             "{name}"
@@ -53,7 +54,7 @@ fn is_passed_over_in_every_format() {
 }
 
 #[test]
-fn alone_is_an_empty_file() {
+fn a_file_of_only_a_mark_is_empty() {
     for (name, _) in texts() {
         let message = |text: &str| {
             let files = Files::new(&[(name, text)]);
@@ -64,7 +65,7 @@ fn alone_is_an_empty_file() {
 }
 
 #[test]
-fn is_passed_over_in_libraries_and_includes() {
+fn a_mark_is_ignored_in_libraries_and_includes() {
     let load = |mark: &str| {
         let library = format!("{mark}newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n");
         let mesh = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nusemtl blue\nf 3 2 1\n";
@@ -80,15 +81,15 @@ fn is_passed_over_in_libraries_and_includes() {
 }
 
 #[test]
-fn moves_no_line_number() {
+fn a_mark_changes_no_line_number() {
     let files = Files::new(&[("a.obj", "\u{feff}v 0 0\n"), ("b.obj", "\u{feff}v 0 0 0\nv 1 0 0\nf 1 2 9\n")]);
     assert!(refusal(files.load("a.obj")).contains("a.obj:1:"));
     assert!(refusal(files.load("b.obj")).contains("b.obj:3:"));
 }
 
-/// What is no text may begin with the same bytes.
+/// Binary data can begin with the same bytes.
 #[test]
-fn is_no_mark_in_a_buffer() {
+fn the_bytes_of_a_mark_are_kept_in_a_buffer() {
     let gltf = |name: &str| {
         texts().pop().map(|(_, text)| {
             let mut document: serde_json::Value = serde_json::from_str(&text).unwrap();
@@ -97,7 +98,7 @@ fn is_no_mark_in_a_buffer() {
         })
     };
     let files = Files::new(&[("a.gltf", &gltf("a.bin").unwrap())]);
-    // The first coordinate has the bytes EF BB BF and an exponent that is harmless
+    // The first coordinate has the bytes EF BB BF and a small exponent.
     let corners = [[f32::from_le_bytes([0xef, 0xbb, 0xbf, 0x3f]), 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0f32]];
     files.write("a.bin", bytemuck::cast_slice(corners.as_flattened()));
     assert_eq!(files.load("a.gltf").unwrap().vertices[0].position.x, corners[0][0]);

@@ -1,5 +1,5 @@
-//! Memory while loading: at most four times the scene that comes out of it, and the file. Held for the largest real files
-//! and for files of every format that are made here.
+//! Tests of the memory while loading, which is at most the file and four times the scene, with the largest real files
+//! and with generated files of every format.
 
 use super::gltf::glb;
 use super::{Files, real_scenes};
@@ -9,10 +9,10 @@ use serde_json::json;
 use std::fmt::Write;
 use std::path::Path;
 
-/// Bytes that any file may take: warnings, names, tables that begin with a few places.
+/// Memory in bytes that any file may take in addition: warnings, names, initial tables.
 const BASE: u64 = 64 << 10;
 
-/// Bytes of what a scene holds.
+/// Size of a scene in bytes.
 fn size(scene: &Scene) -> u64 {
     let poses = scene.camera.as_ref().map_or(0, |camera| size_of_val(camera.frames.as_slice()));
     let [vertices, triangles] = [size_of_val(scene.vertices.as_slice()), size_of_val(scene.triangles.as_slice())];
@@ -21,31 +21,32 @@ fn size(scene: &Scene) -> u64 {
     (vertices + triangles + materials + lights + poses) as u64
 }
 
-/// Four times the scene, the file, and a little.
+/// The limit of memory in bytes for a scene from files of this size.
 fn limit(scene: &Scene, file: u64) -> u64 {
     4 * size(scene) + file + BASE
 }
 
-/// Loads a file and says what is wrong if that took too much at any moment. `bytes` is the size of all that is read.
-fn too_much(what: &Path, bytes: u64) -> Option<String> {
+/// Loads a file; returns a message if the peak of memory exceeds the limit. `bytes` is the size of all files that are
+/// read.
+fn too_much(path: &Path, bytes: u64) -> Option<String> {
     let mut scene = None;
-    // Readers allocate on the thread that calls them, which is the one that is counted
-    let counted = allocation_counter::measure(|| scene = Some(scene::load(what.to_str().unwrap())));
+    // Readers allocate on the calling thread, of which allocations are counted.
+    let counted = allocation_counter::measure(|| scene = Some(scene::load(path.to_str().unwrap())));
     let scene = scene.unwrap().unwrap_or_else(|error| panic!("{error}"));
     let multiple = (counted.bytes_max.saturating_sub(bytes)) as f64 / size(&scene) as f64;
-    let name = what.file_name().unwrap().to_string_lossy();
+    let name = path.file_name().unwrap().to_string_lossy();
     let line = format!("{name}: {} KiB at once, {multiple:.2} times the scene and the file", counted.bytes_max >> 10);
     eprintln!("{line}");
     (counted.bytes_max > limit(&scene, bytes)).then_some(line)
 }
 
-fn hold(files: &[(std::path::PathBuf, u64)]) {
+fn check_memory(files: &[(std::path::PathBuf, u64)]) {
     let wrong: Vec<String> = files.iter().filter_map(|(path, bytes)| too_much(path, *bytes)).collect();
-    assert!(wrong.is_empty(), "more than allowed beside the file:\n{}", wrong.join("\n"));
+    assert!(wrong.is_empty(), "more than the limit:\n{}", wrong.join("\n"));
 }
 
 #[test]
-fn real_files_take_four_times_their_scene_at_most() {
+fn real_files_take_at_most_four_times_their_scene() {
     let Some(folder) = real_scenes("real_files_take_four_times_their_scene_at_most") else { return };
     let whole_folder = |path: &Path| -> u64 {
         let entries = std::fs::read_dir(path.parent().unwrap()).unwrap();
@@ -67,12 +68,12 @@ fn real_files_take_four_times_their_scene_at_most() {
         let path = folder.join(name);
         files.push((path.clone(), whole_folder(&path)));
     }
-    hold(&files);
+    check_memory(&files);
 }
 
-/// The same mesh in every format.
+/// The test writes one mesh in every format.
 #[test]
-fn built_files_take_four_times_their_scene_at_most() {
+fn generated_files_take_at_most_four_times_their_scene() {
     let scene = scene::load("hall:triangles=30000").unwrap();
     let points: Vec<[f32; 3]> = scene.vertices.iter().map(|v| v.position.to_array()).collect();
     let corners: Vec<[u32; 3]> = scene.triangles.iter().map(|t| t.vertices).collect();
@@ -124,7 +125,7 @@ fn built_files_take_four_times_their_scene_at_most() {
         "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1 }] }],
         "nodes": [{ "mesh": 0 }],
     });
-    // A scene that is far away is read twice
+    // A scene far from the origin is read twice.
     let far = |text: &str, keyword: &str| {
         let numbers = |rest: &str| rest.split(' ').map(|x| x.parse().ok()).collect::<Option<Vec<f64>>>();
         let moved = |line: &str| match line.strip_prefix(keyword).and_then(numbers).as_deref() {
@@ -147,15 +148,15 @@ fn built_files_take_four_times_their_scene_at_most() {
     files.write("built.gltf", text.as_bytes());
     written.push((files.path("built.gltf"), (text.len() + buffer.len()) as u64));
     cache::write(&scene, &Sources::default(), &files.path("built.rtb")).unwrap();
-    // Nothing of a cache's file is kept: it is read into its place
+    // The bytes of a cache are not kept: they are read directly into the scene.
     written.push((files.path("built.rtb"), 0));
-    hold(&written);
+    check_memory(&written);
     assert!(limit(&scene, 7) == 4 * size(&scene) + 7 + BASE && size(&scene) > 600_000);
 }
 
-/// Faces whose normals are made: all of them smooth, some of them, none.
+/// Covers face sets with computed normals: all of them smooth, some of them, none.
 #[test]
-fn made_normals_take_four_times_the_scene_at_most() {
+fn computed_normals_take_at_most_four_times_the_scene() {
     const N: usize = 400;
     let mut mesh = "Coordinate3 { point [\n".to_owned();
     for i in 0..N {
@@ -174,5 +175,5 @@ fn made_normals_take_four_times_the_scene_at_most() {
         files.write(&name, text.as_bytes());
         (files.path(&name), text.len() as u64)
     });
-    hold(&written);
+    check_memory(&written);
 }

@@ -1,4 +1,5 @@
-//! MGF: what each entity makes, what is refused, and the real scenes against the counts of the format's own library.
+//! Tests of MGF: each entity, all errors, and the real scenes, compared with the counts of the reference
+//! implementation.
 
 use super::{Files, real_scenes, refusal};
 use glam::Vec3;
@@ -8,12 +9,12 @@ fn mgf(text: &str) -> Scene {
     Files::new(&[("main.mgf", text)]).load("main.mgf").unwrap_or_else(|error| panic!("{text}: {error}"))
 }
 
-/// Vertices of a square in the plane z = 0, and a few more.
+/// Vertices of a square in the plane z = 0, and further vertices.
 const POINTS: &str = "v a =\np 0 0 0\nv b =\np 1 0 0\nv c =\np 1 1 0\nv d =\np 0 1 0\nv up =\np 0 0 2\nn 0 0 1\n\
     v e =\np .2 .3 0\nv f =\np .3 .6 0\nv g =\np .6 .5 0\n";
 
 #[test]
-fn every_shape_gives_the_triangles_of_the_formats_library() {
+fn every_shape_gives_the_triangles_of_the_reference_implementation() {
     for (text, triangles, vertices) in [
         ("f a b c", 1, 3),
         ("f a b c d", 2, 4),
@@ -57,7 +58,7 @@ fn every_shape_gives_the_triangles_of_the_formats_library() {
 }
 
 #[test]
-fn contexts_are_kept_copied_and_changed_by_name() {
+fn contexts_are_selected_copied_and_changed_by_name() {
     let scene = mgf("v a =\np 0 0 0\nv b = a\np 1 0 0\nv c = b\n\tp 1 1 0\nv b\n p 2 0 0\n\
         v c = c\nn 0 0 -5\nv\np 9 9 9\nm red =\n c r =\n cxy .64 .33\n rd .1\nm blue = red\nc\nrs .5 .01\nm\nm red\nf a b c\nm blue\nf a b c");
     assert_eq!(scene.bounds().max, Vec3::new(2.0, 1.0, 0.0), "b was changed, the unnamed vertex has no face");
@@ -67,13 +68,13 @@ fn contexts_are_kept_copied_and_changed_by_name() {
     assert!(red.diffuse.x > 4.0 * red.diffuse.y && red.reflectivity == 0.0, "{red:?}");
     assert_eq!((blue.diffuse, blue.reflectivity), (red.diffuse, 0.5));
     assert!((blue.specular - Vec3::splat(0.5)).abs().max_element() < 1e-3, "{blue:?}");
-    // A rough surface shines, but is no mirror
+    // A rough surface has a highlight, but is not a mirror.
     let rough = mgf(&format!("{POINTS}m x =\nrs .5 .2\nf a b c")).materials[0];
     assert!(rough.reflectivity == 0.0 && (rough.exponent - 48.0).abs() < 1e-3, "{rough:?}");
 }
 
 #[test]
-fn colours_come_from_coordinates_spectra_temperatures_and_mixtures() {
+fn colours_are_given_by_coordinates_spectra_temperatures_and_mixtures() {
     for (colour, share) in [
         ("cxy .3333 .3333", [1.0, 1.0, 1.0]),
         ("cspec 380 780 1 1", [1.0, 1.0, 1.0]),
@@ -89,7 +90,7 @@ fn colours_come_from_coordinates_spectra_temperatures_and_mixtures() {
 }
 
 #[test]
-fn includes_are_placed_and_names_go_through_them() {
+fn includes_are_transformed_and_share_the_names() {
     let files = Files::new(&[
         ("main.mgf", &format!("{POINTS}xf -t 0 0 5\ni parts/face.mgf -a 2 -t 3 0 0\nxf\nf made b c")),
         ("parts/face.mgf", "i ../parts/new.mgf\nf a b c\nies lamp.ies -m 2"),
@@ -97,11 +98,11 @@ fn includes_are_placed_and_names_go_through_them() {
     ]);
     let scene = files.load("main.mgf").unwrap();
     assert_eq!((scene.triangles.len(), scene.bounds().max), (3, Vec3::new(4.0, 1.0, 5.0)));
-    assert_eq!(scene.warnings, ["`ies`: luminaire data passed over (2 times)"]);
+    assert_eq!(scene.warnings, ["`ies`: luminaire data ignored (2 times)"]);
 }
 
 #[test]
-fn emitting_surfaces_become_a_few_point_lights() {
+fn emissive_surfaces_become_a_few_point_lights() {
     let panel = format!("{POINTS}m lamp =\ned 100\nf a b c d\nm x =\nrd .5\nf a d c b\n");
     let scene = mgf(&panel);
     assert_eq!(scene.lights.len(), 1);
@@ -109,35 +110,35 @@ fn emitting_surfaces_become_a_few_point_lights() {
     assert!((light.position.truncate() - Vec3::splat(0.5).truncate()).length() < 1e-6);
     assert!(light.position.z > 0.0 && light.position.z < 0.01, "just in front: {}", light.position);
     assert!((light.colour - Vec3::ONE).abs().max_element() < 1e-3);
-    // Twelve panels, one of them twice as strong; a bulb has its light outside
+    // Twelve panels, one of which is twice as bright, and a bulb, which has its light outside
     let many = format!("{panel}m lamp\nxf -a 11 -t 5 0 0\nf a b c d\nxf\nm bulb =\ned 9\nsph up .5\n");
     let scene = mgf(&many);
     assert_eq!(scene.lights.len(), 8);
     let total: Vec3 = scene.lights.iter().map(|light| light.colour).sum();
     assert!((total - Vec3::ONE).abs().max_element() < 1e-3, "{total}");
     assert!(scene.lights.iter().all(|light| light.position.distance(Vec3::Z * 2.0) > 0.45));
-    assert_eq!(scene.warnings, ["13 emitting surfaces shown as 8 point lights"]);
+    assert_eq!(scene.warnings, ["13 emissive surfaces merged into 8 point lights"]);
 }
 
 #[test]
-fn each_fault_is_named_with_its_line() {
+fn each_error_has_its_line() {
     for (text, words) in [
         ("", &["there is no triangle"][..]),
         ("f a b nowhere", &["main.mgf:18: f: `nowhere` is not defined"]),
         ("f a b", &["there is no triangle"]),
         ("v x = nowhere", &[":18: v: `nowhere` is not defined"]),
-        ("v x y", &[":18: v: this selects no context"]),
-        ("p 1 2", &[":18: p: 2 arguments where 3 numbers are needed"]),
+        ("v x y", &[":18: v: the arguments do not select a context"]),
+        ("p 1 2", &[":18: p: there are 2 arguments, but 3 numbers are needed"]),
         ("p 1 2 z", &["`z` is not a finite number"]),
         ("p 1 2 1e999", &["`1e999` is not a finite number"]),
         ("v x =\np 1e99 0 0\nf a b x", &[":20: f: a corner at"]),
-        ("cxy .9 .9", &["no such colour"]),
-        ("cspec 400 700", &["no such colour"]),
+        ("cxy .9 .9", &["the colour is not valid"]),
+        ("cspec 400 700", &["the colour is not valid"]),
         ("cmix 1", &["a weight without a colour"]),
-        ("cct -5", &["no such colour"]),
-        ("rd -1", &["negative amount"]),
-        ("rs .5", &["1 arguments where 2 numbers"]),
-        ("sph a", &["sph: 1 arguments are not what it takes"]),
+        ("cct -5", &["the colour is not valid"]),
+        ("rd -1", &["the amount of light or the roughness is negative"]),
+        ("rs .5", &["there are 1 arguments, but 2 numbers"]),
+        ("sph a", &["sph: 1 arguments are the wrong number"]),
         ("sph a 1e99", &["not finite in single precision"]),
         ("ring up 2 1", &["0 <= inner < outer"]),
         ("torus up 2 1", &[":18: torus: the radii are not 0 <= inner < outer", "both are negative"]),
@@ -145,22 +146,25 @@ fn each_fault_is_named_with_its_line() {
         ("torus up -1 2", &["0 <= inner < outer"]),
         ("torus up -2 -1", &["0 <= inner < outer"]),
         ("torus up .5 -1", &["0 <= inner < outer"]),
-        ("F a b c\nf a b", &["there is no triangle: unknown entity `F` passed over, polygon with fewer"]),
+        ("F a b c\nf a b", &["there is no triangle: unknown entity `F` ignored, polygon with fewer"]),
         ("f a \\\nb \\\n\\\nc\n# more \\\nof it\nf a b nowhere", &[":24: f: `nowhere`"]),
-        ("p 1 \\\n2", &[":18: p: 2 arguments"]),
+        ("p 1 \\\n2", &[":18: p: there are 2 arguments"]),
         ("cone a 1 up -1", &["one radius is positive"]),
         ("xf -t 1 0", &[":18: `-t` needs more numbers"]),
-        ("xf -q", &["`-q` is no part of a transform"]),
+        ("xf -q", &["`-q` is not a part of a transform"]),
         ("xf -a 1e9", &["not a number of copies"]),
-        ("xf -t 1 0 0\nf a b c", &[":18: the transform that begins here has no `xf`"]),
-        ("xf", &[":18: `xf` ends no transform"]),
+        ("xf -t 1 0 0\nf a b c", &[":18: the transform that begins here has no closing `xf`"]),
+        ("xf", &[":18: `xf` closes no transform"]),
         ("i main.mgf", &[":18: include `main.mgf`: the file includes itself"]),
         ("i nowhere.mgf", &[":18: include `nowhere.mgf`: no such file"]),
         ("i ../outside.mgf", &["lies outside of the scene's folder"]),
-        ("i", &["`i` names no file"]),
-        (&"xf -s 1\n".repeat(200), &["inside each other"]),
+        ("i", &["`i` has no file name"]),
+        (&"xf -s 1\n".repeat(200), &["nested more than"]),
         (&format!("{}sph a 1\n{}", "xf -a 1000 -t 1 0 0\n".repeat(4), "xf\n".repeat(4)), &["more than 64 MiB"]),
-        (&format!("{}{}", "xf -a 1000 -t 1 0 0\n".repeat(4), "xf\n".repeat(4)), &["arrays of arrays never end"]),
+        (
+            &format!("{}{}", "xf -a 1000 -t 1 0 0\n".repeat(4), "xf\n".repeat(4)),
+            &["nested arrays repeat too many entities"],
+        ),
     ] {
         let files = Files::new(&[("main.mgf", &format!("{POINTS}{text}")), ("../outside.mgf", "f a b c")]);
         let message = refusal(files.load("main.mgf"));
@@ -169,13 +173,13 @@ fn each_fault_is_named_with_its_line() {
         }
     }
     let scene = mgf(&format!("{POINTS}hologram 1 2 3\nf a b c"));
-    assert_eq!(scene.warnings, ["unknown entity `hologram` passed over"]);
+    assert_eq!(scene.warnings, ["unknown entity `hologram` ignored"]);
 }
 
-/// Counts of the format's own library, less the triangles without area that it makes at the tips of cones and in the middle
-/// of disks: 20 at one disk in graz, 20 at each of 52 cones and 44 disks in soda.
+/// The expected counts are those of the reference implementation, without the triangles without area that it creates at
+/// the tips of cones and at the centres of disks: 20 at one disk in graz, 20 at each of 52 cones and 44 disks in soda.
 #[test]
-fn the_real_scenes_have_the_counts_of_the_library() {
+fn the_real_scenes_have_the_counts_of_the_reference_implementation() {
     let Some(folder) = real_scenes("the_real_scenes_have_the_counts_of_the_library") else { return };
     for (file, triangles, lights) in [
         ("classroom", 9_253, 8),

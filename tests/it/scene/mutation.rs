@@ -1,5 +1,6 @@
-//! Thousands of broken variants of every fixture, the same ones on every machine: each is read or refused with one line;
-//! none panics, none hangs, and none takes more memory than sixteen times its file and 64 MiB.
+//! Tests of the readers with thousands of mutated variants of every fixture, which are deterministic. Each variant is
+//! read or refused with one line; none panics, none hangs, and none takes more memory than sixteen times its file and
+//! 64 MiB.
 
 mod bombs;
 mod guard;
@@ -14,18 +15,19 @@ use rtbench::Error;
 use rtbench::scene::cache::{self, Sources};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Formats by extension, and where their fixtures lie below the folder of real scenes.
+/// Formats by extension, and the folders of their fixtures in the folder of real scenes.
 const FORMATS: [(&str, &str); 5] =
     [("aff", "fixtures/aff"), ("nff", "fixtures/nff"), ("ply", "fixtures/ply"), ("mgf", "mgf"), ("iv", "fixtures/iv")];
 
-/// Largest fixture to be broken: a larger one is more of the same.
+/// Size of the largest fixture that is mutated, in bytes.
 const LARGEST: usize = 20_000;
 
-/// Variants of each fixture, and of each file of our own.
+/// Number of variants of each fixture.
 const VARIANTS: u64 = 300;
+/// Number of variants of each file in [`OWN`].
 const OWN_VARIANTS: u64 = 2000;
 
-/// Small files with everything in them, for where the fixtures are not at hand.
+/// Small files with all features, which are tested even without the fixtures.
 const OWN: [(&str, &str); 6] = [
     ("all.aff", include_str!("../../data/all.aff")),
     (
@@ -45,39 +47,40 @@ const OWN: [(&str, &str); 6] = [
     ),
 ];
 
-/// One fixture to be broken.
+/// A file to be mutated.
 struct Case<'a> {
-    /// The file that is broken.
+    /// Name of the file that is mutated.
     name: &'a str,
     original: &'a [u8],
-    /// The file that is loaded: this one or one that uses it.
+    /// Name of the file that is loaded: this file or one that includes it.
     load: &'a str,
-    /// What lies beside it.
-    beside: &'a [(String, Vec<u8>)],
+    /// Further files in its folder.
+    other_files: &'a [(String, Vec<u8>)],
     mutate: fn(&[u8], &mut Random) -> Vec<u8>,
     variants: u64,
 }
 
 impl<'a> Case<'a> {
     fn new(name: &'a str, original: &'a [u8], mutate: fn(&[u8], &mut Random) -> Vec<u8>) -> Case<'a> {
-        Case { name, original, load: name, beside: &[], mutate, variants: VARIANTS }
+        Case { name, original, load: name, other_files: &[], mutate, variants: VARIANTS }
     }
 }
 
-/// The variant that alone is wanted, as `NAME:NUMBER` in RTBENCH_VARIANT.
+/// The only variant to be tested, given as `NAME:NUMBER` in RTBENCH_VARIANT.
 fn wanted() -> Option<(String, u64)> {
     let wanted = std::env::var("RTBENCH_VARIANT").ok()?;
     let (name, variant) = wanted.rsplit_once(':').expect("RTBENCH_VARIANT is NAME:NUMBER");
     Some((name.to_owned(), variant.parse().expect("RTBENCH_VARIANT is NAME:NUMBER")))
 }
 
-/// Loads the variants of one file, in a folder with what it includes. Returns how many were read.
-fn break_it(case: &Case) -> u64 {
+/// Loads the variants of a file, in a folder with its further files. Returns the number of variants that were read.
+fn load_variants(case: &Case) -> u64 {
     let files = Files::new(&[]);
-    for (name, bytes) in case.beside {
+    for (name, bytes) in case.other_files {
         files.write(name, bytes);
     }
-    let beside: usize = case.beside.iter().filter(|(name, _)| name != case.name).map(|(_, bytes)| bytes.len()).sum();
+    let other_bytes: usize =
+        case.other_files.iter().filter(|(name, _)| name != case.name).map(|(_, bytes)| bytes.len()).sum();
     let watchdog = Watchdog::new();
     let mut read = 0;
     let only = wanted();
@@ -85,47 +88,47 @@ fn break_it(case: &Case) -> u64 {
         if only.as_ref().is_some_and(|(name, number)| name != case.name || *number != variant) {
             continue;
         }
-        let what = format!(
-            "{0}, variant {variant} (again: RTBENCH_VARIANT={0}:{variant} cargo test --release --test it mutation)",
+        let case_name = format!(
+            "{0}, variant {variant} (repeat with RTBENCH_VARIANT={0}:{variant} cargo test --release --test it mutation)",
             case.name
         );
-        // Each has a seed of its own, so that it can be made again without those before it
+        // Each variant has its own seed, so that it can be repeated alone.
         let mut random = Random(seed_of(&format!("{} {variant}", case.name)) | 1);
         let bytes = (case.mutate)(case.original, &mut random);
-        // A byte may have been replaced by its like
+        // A byte may have been replaced by itself.
         if bytes == case.original {
             continue;
         }
         if only.is_some() {
-            eprintln!("{what}:\n{}", String::from_utf8_lossy(&bytes));
+            eprintln!("{case_name}:\n{}", String::from_utf8_lossy(&bytes));
         }
         files.write(case.name, &bytes);
-        watchdog.begin(&what);
-        let result = guard::held(&what, beside + bytes.len(), || {
-            catch_unwind(AssertUnwindSafe(|| files.load(case.load))).unwrap_or_else(|_| panic!("{what}: panics"))
+        watchdog.begin(&case_name);
+        let result = guard::within_limits(&case_name, other_bytes + bytes.len(), || {
+            catch_unwind(AssertUnwindSafe(|| files.load(case.load))).unwrap_or_else(|_| panic!("{case_name}: panics"))
         });
         match result {
             Ok(scene) => {
                 read += 1;
-                scene.check().unwrap_or_else(|error| panic!("{what}: {error}"));
+                scene.check().unwrap_or_else(|error| panic!("{case_name}: {error}"));
             }
             Err(error) => {
-                assert!(matches!(error, Error::Input(_)), "{what}: {error:?}");
-                assert!(!error.to_string().contains('\n'), "{what}: {error}");
+                assert!(matches!(error, Error::Input(_)), "{case_name}: {error:?}");
+                assert!(!error.to_string().contains('\n'), "{case_name}: {error}");
             }
         }
     }
     read
 }
 
-/// Breaks a file of our own: some variants should still be read, some not.
-fn break_own(case: &Case) {
-    let read = break_it(case);
+/// Tests the variants of a file; asserts that some are read and some are refused.
+fn load_own_variants(case: &Case) {
+    let read = load_variants(case);
     let some = wanted().is_some() || (1..case.variants).contains(&read);
-    assert!(some, "{}: {read} of {} variants read; some should be, some not", case.name, case.variants);
+    assert!(some, "{}: {read} of {} variants are read; some must be read and some refused", case.name, case.variants);
 }
 
-/// A seed from a name (FNV-1a).
+/// A seed computed from a name (FNV-1a).
 fn seed_of(name: &str) -> u64 {
     name.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
@@ -135,7 +138,7 @@ fn own_files_survive_every_mutation() {
     for (name, text) in OWN {
         let whole = Files::new(&[(name, text)]).load(name);
         assert!(whole.is_ok(), "{name}: {}", whole.unwrap_err());
-        break_own(&Case { variants: OWN_VARIANTS, ..Case::new(name, text.as_bytes(), mutate::text) });
+        load_own_variants(&Case { variants: OWN_VARIANTS, ..Case::new(name, text.as_bytes(), mutate::text) });
     }
 }
 
@@ -154,7 +157,7 @@ fn fixtures_survive_every_mutation() {
         assert!(files.len() >= 3, "{format}: only {} fixtures", files.len());
         let read: u64 = files
             .iter()
-            .map(|(name, bytes)| break_it(&Case { beside: &files, ..Case::new(name, bytes, mutate::text) }))
+            .map(|(name, bytes)| load_variants(&Case { other_files: &files, ..Case::new(name, bytes, mutate::text) }))
             .sum();
         eprintln!("{format}: {read} of {} variants read, the others refused", VARIANTS * files.len() as u64);
     }
@@ -168,7 +171,7 @@ fn meshes_with_a_material_library_survive_every_mutation() {
     assert!(whole.materials.len() >= 3 && !whole.lights.is_empty(), "{:?}", whole.warnings);
     for (name, bytes) in &files {
         let case = Case::new(name, bytes, mutate::text);
-        break_own(&Case { load: "all.obj", beside: &files, variants: OWN_VARIANTS, ..case });
+        load_own_variants(&Case { load: "all.obj", other_files: &files, variants: OWN_VARIANTS, ..case });
     }
 }
 
@@ -186,8 +189,8 @@ fn gltf_of_both_kinds_survives_every_mutation() {
     assert!(
         a.content_hash() == b.content_hash() && a.triangles.len() >= 8 && a.camera.is_some() && a.lights.len() == 3
     );
-    break_own(&Case { variants: OWN_VARIANTS, ..Case::new("all.gltf", text.as_bytes(), mutate::text) });
-    break_own(&Case { variants: OWN_VARIANTS, ..Case::new("all.glb", &binary, mutate::bytes) });
+    load_own_variants(&Case { variants: OWN_VARIANTS, ..Case::new("all.gltf", text.as_bytes(), mutate::text) });
+    load_own_variants(&Case { variants: OWN_VARIANTS, ..Case::new("all.glb", &binary, mutate::bytes) });
 }
 
 #[test]
@@ -197,13 +200,13 @@ fn caches_survive_every_mutation() {
     scene.warnings.truncate(2);
     cache::write(&scene, &Sources::default(), &files.path("all.rtb")).unwrap();
     let bytes = std::fs::read(files.path("all.rtb")).unwrap();
-    // The checksum sees everything; with a right one, the other checks have to.
-    let caught = break_it(&Case::new("all.rtb", &bytes, mutate::bytes));
-    assert!(wanted().is_some() || caught == 0, "{caught} broken caches were read");
+    // The checksum detects every change; with a valid checksum, the other checks have to.
+    let caught = load_variants(&Case::new("all.rtb", &bytes, mutate::bytes));
+    assert!(wanted().is_some() || caught == 0, "{caught} damaged caches were read");
     let resealed = |original: &[u8], random: &mut Random| {
         let mut bytes = mutate::bytes(original, random);
         cache::reseal(&mut bytes);
         bytes
     };
-    break_own(&Case { variants: OWN_VARIANTS, ..Case::new("resealed.rtb", &bytes, resealed) });
+    load_own_variants(&Case { variants: OWN_VARIANTS, ..Case::new("resealed.rtb", &bytes, resealed) });
 }

@@ -1,4 +1,5 @@
-//! Scenes far from the origin, tiny and huge ones: as near the origin, in every format, for rays, cameras and caches.
+//! Tests of scenes far from the origin and of tiny and huge scenes: they behave like the same scenes near the origin,
+//! in every format, for rays, cameras and caches.
 
 use super::{Files, refusal};
 use crate::scene::gltf::glb;
@@ -7,16 +8,16 @@ use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use rtbench::Error;
 use rtbench::camera::{CameraPath, View};
-use rtbench::harness::plan::scene_record;
 use rtbench::math::{Aabb, Hit, MISS};
-use rtbench::record::rays_csv::ExactRay;
-use rtbench::record::schema::SceneRecord;
 use rtbench::scene::cache::{self, Sources};
 use rtbench::scene::placement::power_of_two;
 use rtbench::scene::{self, Placement, Scene};
 use rtbench::workloads::trace::CpuBackend;
 use rtbench::workloads::trace::Selection;
 use rtbench::workloads::trace::backend::{Backend, Config, GivenRay, Pixel, Prepared, Size, surface_epsilon};
+use rtbench::workloads::trace::input::scene_record;
+use rtbench::workloads::trace::rays_csv::ExactRay;
+use rtbench::workloads::trace::record::SceneRecord;
 use serde_json::json;
 use std::fmt::Write;
 use std::path::Path;
@@ -25,7 +26,7 @@ fn data(name: &str) -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/rays").join(name).to_str().unwrap().to_owned()
 }
 
-/// A square image of a frame of a path.
+/// A square image of a frame of a camera path.
 fn picture(scene: &Scene, path: &str, frame: usize, size: u32) -> Vec<Pixel> {
     let views = CameraPath::load(path).unwrap().views(scene, None).unwrap();
     picture_of(scene, &views[frame], size)
@@ -41,10 +42,10 @@ fn picture_of(scene: &Scene, view: &View, size: u32) -> Vec<Pixel> {
 fn with_prepared<T>(backend: &dyn Backend, scene: &Scene, work: impl FnOnce(&mut dyn Prepared) -> T) -> T {
     let selection = Selection::parse("bvh-stack").unwrap();
     let built = selection.build(scene, 1).unwrap();
-    work(&mut *backend.prepare(scene, &built.structure, selection.method()).unwrap())
+    work(&mut *backend.prepare(scene, &*built.structure, selection.method()).unwrap())
 }
 
-/// Pixels that differ by more than so many levels.
+/// Number of pixels that differ by more than `levels`.
 fn differing(a: &[Pixel], b: &[Pixel], levels: u8) -> usize {
     let far = |(a, b): &(&Pixel, &Pixel)| {
         a.rgba.to_le_bytes().iter().zip(b.rgba.to_le_bytes()).any(|(a, b)| a.abs_diff(b) > levels)
@@ -62,14 +63,14 @@ fn a_scene_in_utm_coordinates_looks_as_at_the_origin() {
         let [a, b] = [&far, &near].map(|scene| picture(scene, path, frame, 96));
         assert_eq!(differing(&a, &b, 0), 0, "{path}, frame {frame}");
     }
-    // What the pictures would show otherwise
+    // Without the placement the images would differ.
     let kept = scene::load(&format!("{}:origin=keep", data("utm.ply"))).unwrap();
     assert_eq!((kept.placement, kept.name.as_str()), (Placement::IDENTITY, "utm:origin=keep"));
     let [a, b] = [&kept, &near].map(|scene| picture(scene, "light-orbit", 0, 96));
     assert!(differing(&a, &b, 8) > 100);
 }
 
-/// Positions and triangles, which every format can hold.
+/// Positions and triangles, which every format can store.
 #[derive(Clone)]
 struct Mesh {
     points: Vec<DVec3>,
@@ -77,12 +78,12 @@ struct Mesh {
 }
 
 impl Mesh {
-    /// Random triangles whose coordinates are multiples of 2^-20 from -2 to 2.
+    /// Random triangles with coordinates that are multiples of 2^-20, from -2 to 2.
     fn random(triangles: usize, seed: u32) -> Mesh {
         let scene = soup(triangles, seed, false);
         let points: Vec<DVec3> =
             scene.vertices.iter().map(|v| (v.position.as_dvec3() * 1048576.0).round() / 1048576.0).collect();
-        // Neither twice the same nor without an area
+        // No duplicates, and no triangles without area
         let sound = |&[a, b, c]: &[usize; 3]| a + 1 == b && b + 1 == c && points[b] != points[c];
         let faces = scene.triangles.iter().map(|t| t.vertices.map(|v| v as usize)).filter(sound).collect();
         Mesh { points, faces }
@@ -99,7 +100,7 @@ impl Mesh {
         (max - min).max_element()
     }
 
-    /// The mesh as a file of a format, moved by `shift`, which is a node's or a transform's in formats with such.
+    /// The mesh as a file of a format, moved by `shift`. Formats with transforms store `shift` as a transform.
     fn file(&self, format: &str, shift: DVec3) -> Vec<u8> {
         let mut text = String::new();
         let moved = self.map(|p| p + shift);
@@ -171,7 +172,7 @@ impl Mesh {
                         { "bufferView": 1, "componentType": 5125, "count": 3 * self.faces.len(), "type": "SCALAR" },
                     ],
                     "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1 }] }],
-                    // A quarter turn that is undone: neither may round
+                    // A quarter turn and its inverse; neither may round.
                     "nodes": [
                         { "translation": [x, y, z], "children": [1] },
                         { "rotation": [0, 1, 0, 0], "children": [2] },
@@ -186,7 +187,7 @@ impl Mesh {
         text.into_bytes()
     }
 
-    /// The faces by the text of their corners.
+    /// The faces, formatted from the texts of their corners.
     fn each<'m>(
         &'m self,
         points: &'m Mesh,
@@ -199,7 +200,7 @@ impl Mesh {
 
 const FORMATS: [&str; 9] = ["ascii.ply", "binary.ply", "a.obj", "a.nff", "a.aff", "a.mgf", "a.iv", "a.wrl", "a.glb"];
 
-/// Loads a mesh from a file of some format, with options behind its name.
+/// Loads a mesh from a file of a format, with options.
 fn load(mesh: &Mesh, format: &str, shift: DVec3, options: &str) -> Scene {
     let files = Files::new(&[]);
     files.write(format, &mesh.file(format, shift));
@@ -210,7 +211,7 @@ fn words(v: &[rtbench::math::Vertex]) -> &[u8] {
     bytemuck::cast_slice(v)
 }
 
-/// The greatest distance of a triangle's corner, in the file's coordinates, from where the file has it.
+/// The largest distance between a corner of the scene, converted to the file's coordinates, and the corner in the file.
 fn greatest_error(scene: &Scene, mesh: &Mesh, shift: DVec3) -> f64 {
     assert_eq!(scene.triangles.len(), mesh.faces.len());
     let corners = scene.triangles.iter().flat_map(|t| t.vertices).map(|v| scene.vertices[v as usize].position);
@@ -236,7 +237,7 @@ fn every_format_is_read_in_double_precision() {
             assert!(greatest_error(&auto, &mesh, shift) < 2e-7 * mesh.extent(), "{format} at {shift}");
             let kept = load(&mesh, format, shift, ":origin=keep");
             assert!(kept.placement.is_identity() && kept.warnings.is_empty());
-            // The same measure sees what single precision does
+            // The same measure detects the error of single precision.
             let error = greatest_error(&kept, &mesh, shift);
             assert!(error > 5e-6 * mesh.extent(), "{format} at {shift}: {error}");
         }
@@ -246,8 +247,8 @@ fn every_format_is_read_in_double_precision() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// A scene that is moved by up to ten million extents and scaled by a power of two is the same scene: vertices,
-    /// pictures, rays and distances, to the bit.
+    /// A scene that is moved by up to ten million extents and scaled by a power of two gives the same vertices, images,
+    /// hits and distances, to the bit.
     #[test]
     fn a_moved_and_scaled_scene_is_the_same(
         seed in 1u32..1000,
@@ -261,7 +262,7 @@ proptest! {
         let [x, y, z] = (shift * scale).to_array();
         let far = load(&mesh.map(|p| p * scale), format, shift * scale, &format!(":origin={x},{y},{z}"));
         prop_assert_eq!(far.placement.offset, shift * scale);
-        // What is comfortable stays, and what is not becomes about one
+        // A comfortable extent is kept, any other becomes about one.
         let left = far.placement.exponent + exponent;
         let scaled = far.placement.exponent != 0;
         prop_assert!(if scaled { (-3..1).contains(&left) } else { (-11..=23).contains(&exponent) }, "2^{}", left);
@@ -302,7 +303,7 @@ proptest! {
 }
 
 #[test]
-fn what_single_precision_lost_is_found_by_reading_again() {
+fn an_extent_lost_in_rounding_is_recovered_by_further_readings() {
     let mesh = Mesh::random(30, 9);
     for (extent, shift) in [(1e-3, 5e6), (1e-6, 1.5e5), (1.0, 1e12), (1e-9, 3e-3)] {
         let small = mesh.map(|p| p * extent);
@@ -319,16 +320,16 @@ fn what_single_precision_lost_is_found_by_reading_again() {
     }
 }
 
-/// Axes, sizes and units: `up` and `scale` act on the file's coordinates, and the origin goes with them.
+/// `up` and `scale` apply to the file's coordinates, and the placement's offset is converted accordingly.
 #[test]
-fn up_and_scale_act_on_the_offset_as_well() {
+fn up_and_scale_apply_to_the_offset() {
     let (mesh, shift) = (Mesh::random(20, 4), DVec3::new(1e6, -2e6, 3e6));
     let near = load(&mesh, "a.obj", DVec3::ZERO, ":up=z,scale=0.5");
     let far = load(&mesh, "a.obj", shift, ":up=z,scale=0.5,origin=1000000,-2000000,3000000");
     assert!(words(&near.vertices) == words(&far.vertices));
     assert_eq!(far.placement.offset, DVec3::new(5e5, 1.5e6, 1e6));
     assert_eq!(far.name, "a:up=z,scale=0.5,origin=1000000,-2000000,3000000");
-    // Small by the file, large by its unit, and the other way round
+    // Small in the file and large after scaling, and vice versa
     for (factor, scale) in [(1e-12, "1e12"), (1e12, "1e-12"), (1.0, "1e-14"), (1.0, "1e14")] {
         let scene = load(&mesh.map(|p| p * factor), "a.obj", DVec3::ZERO, &format!(":scale={scale}"));
         let extent = scene.placement.length(scene.bounds().extent().max_element());
@@ -340,7 +341,7 @@ fn up_and_scale_act_on_the_offset_as_well() {
 }
 
 #[test]
-fn joined_files_share_one_origin() {
+fn joined_files_have_one_common_origin() {
     let (a, b) = (Mesh::random(20, 5), Mesh::random(20, 6));
     let shift = DVec3::new(5e5, 0.0, 4649776.0);
     let files = Files::new(&[]);
@@ -358,7 +359,7 @@ fn joined_files_share_one_origin() {
     let joined = both(&["a.ply", "b.obj"]);
     assert!(joined.placement.offset.x.abs() > 4e5 && joined.warnings.len() == 1, "{:?}", joined.warnings);
     assert!(greatest_error(&joined, &whole, shift) < 5e-7 * whole.extent());
-    // A cache that has another place is moved there, or the files are moved to the cache's
+    // A cache with another placement is converted to the common placement.
     let alone = scene::load(files.path("a.ply").to_str().unwrap()).unwrap();
     cache::write(&alone, &Sources::default(), &files.path("a.rtb")).unwrap();
     let mixed = both(&["a.rtb", "b.obj"]);
@@ -368,7 +369,7 @@ fn joined_files_share_one_origin() {
     let folder = scene::load(files.path("").to_str().unwrap()).unwrap();
     assert_eq!(folder.triangles.len(), a.faces.len() + 2 * b.faces.len());
     assert!(folder.placement.offset.z > 4e6);
-    // One near, one far: nothing can be done, and nothing is lost that was there
+    // One part is near and one is far: the origin is not moved, and the near part loses no precision.
     files.write("near.obj", &b.file("a.obj", DVec3::ZERO));
     let spread = both(&["near.obj", "b.obj"]);
     assert!(spread.placement.is_identity());
@@ -386,16 +387,16 @@ fn caches_keep_their_placement() {
     assert_eq!(again.placement, scene.placement);
     assert!(words(&again.vertices) == words(&scene.vertices));
     assert_eq!((again.content_hash(), &again.warnings), (scene.content_hash(), &scene.warnings));
-    // Options act on what is in the cache
+    // Options apply to the scene in the cache.
     let scaled = files.load("far.rtb:scale=1e9,up=z").unwrap();
     assert_eq!(scaled.placement.exponent, 0);
     assert!((scaled.placement.offset - DVec3::new(5e8, -2.5e8, 0.0)).length() < 1.0, "{:?}", scaled.placement);
     assert!(refusal(files.load("far.rtb:origin=keep")).contains("no option `origin`"));
-    // One that was made to stay far away stays there
+    // A scene that was loaded with origin=keep keeps its placement.
     let kept = files.load("far.ply:origin=keep").unwrap();
     cache::write(&kept, &sources, &files.path("kept.rtb")).unwrap();
     assert_eq!(files.load("kept.rtb").unwrap().placement, kept.placement);
-    // The layout of before
+    // The previous version of the layout
     let mut old = std::fs::read(files.path("far.rtb")).unwrap();
     old[8..12].copy_from_slice(&4u32.to_le_bytes());
     cache::reseal(&mut old);
@@ -404,7 +405,7 @@ fn caches_keep_their_placement() {
 }
 
 #[test]
-fn the_hash_and_the_record_know_where_a_scene_lies() {
+fn hash_and_record_include_the_placement() {
     let mesh = Mesh::random(10, 8);
     let near = load(&mesh, "a.obj", DVec3::ZERO, "");
     let far = load(&mesh, "a.obj", DVec3::X * 1e6, ":origin=1e6,0,0");
@@ -414,7 +415,7 @@ fn the_hash_and_the_record_know_where_a_scene_lies() {
     assert_eq!(near.content_hash(), moved.content_hash());
     let [near, far] = [near, far].map(|scene| serde_json::to_string(&scene_record(&scene)).unwrap());
     assert!(!near.contains("placement") && far.contains(r#""placement":{"offset":[1000000.0,0.0,0.0],"exponent":0}"#));
-    // A record of before has none
+    // Older records have no placement.
     let [near, far]: [SceneRecord; 2] = [near, far].map(|text| serde_json::from_str(&text).unwrap());
     assert_eq!((near.placement, far.placement.unwrap().offset), (None, [1e6, 0.0, 0.0]));
 }
@@ -423,7 +424,7 @@ const FAR_FILE: &str = "v from 500003.1 2 4649780.25 at 500000 0.5 4649776 up 0 
     f 1 .5 .5 1 0 0 0 1\ns 500000 0.5 4649776 1\n\
     p 4 499995 -.5 4649771 499995 -.5 4649781 500005 -.5 4649781 500005 -.5 4649771\n";
 
-/// The same with all of it at the origin.
+/// The scene of [`FAR_FILE`] at the origin.
 fn near_file() -> String {
     let zero = |text: &str, from: &[(&str, &str)]| from.iter().fold(text.to_owned(), |t, (a, b)| t.replace(a, b));
     zero(
@@ -444,22 +445,22 @@ fn near_file() -> String {
 }
 
 #[test]
-fn cameras_and_lights_move_along() {
+fn cameras_and_lights_are_moved_with_the_scene() {
     let near = near_file();
     let files = Files::new(&[("far.nff", FAR_FILE), ("near.nff", &near)]);
     let [far, near] = ["far.nff:origin=500000,0,4649776", "near.nff"].map(|name| files.load(name).unwrap());
     assert_eq!(far.lights, near.lights);
-    // What is made of sines differs by what doubles round there
+    // Values that are computed with sines differ by the rounding of doubles.
     let pairs = || far.vertices.iter().zip(&near.vertices);
     assert!(pairs().all(|(a, b)| a.position.abs_diff_eq(b.position, 1e-7) && a.normal == b.normal));
     let view =
         |scene: &Scene| CameraPath::for_scene(scene, Config::PS.shadows()).views(scene, None).unwrap()[0].clone();
     let [a, b] = [&far, &near].map(|scene| picture_of(scene, &view(scene), 48));
-    // The camera's own digits are not exact in either place
+    // The digits of the camera's position are not exact at either place.
     assert!(differing(&a, &b, 8) <= 4);
     let position = far.placement.file(view(&far).camera.position);
     assert!((position - DVec3::new(500003.1, 2.0, 4649780.25)).length() < 1e-6, "{position}");
-    // Paths in the file's coordinates, and lights of theirs
+    // Camera paths in the file's coordinates, with lights
     let path = |x: f64, z: f64| {
         let at = |p: [f64; 3]| format!("[{}, {}, {}]", p[0] + x, p[1], p[2] + z);
         let text = format!(
@@ -481,20 +482,20 @@ fn cameras_and_lights_move_along() {
 }
 
 #[test]
-fn exported_cameras_are_in_the_file_s_coordinates_and_lead_back() {
+fn exported_cameras_are_in_the_files_coordinates_and_convert_back() {
     let files = Files::new(&[("far.nff", FAR_FILE)]);
-    let what = files.path("far.nff").to_str().unwrap().to_owned();
+    let file = files.path("far.nff").to_str().unwrap().to_owned();
     let program = |arguments: &[&str]| {
         let output = std::process::Command::new(env!("CARGO_BIN_EXE_rtbench")).args(arguments).output().unwrap();
         assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
         String::from_utf8(output.stdout).unwrap()
     };
-    let info = program(&["scenes", "info", &what]);
+    let info = program(&["scenes", "info", &file]);
     for words in ["[499995, -0.5, 4649771]", "[500000, 0, 4649776] is the origin", "at [500003.1, 2, 4649780.25], 50"] {
         assert!(info.contains(words), "{words}: {info}");
     }
     let (csv, toml) = (files.path("c.csv"), files.path("c.toml"));
-    program(&["camera-path", "export", &what, "-o", csv.to_str().unwrap()]);
+    program(&["camera-path", "export", &file, "-o", csv.to_str().unwrap()]);
     let csv = std::fs::read_to_string(csv).unwrap();
     assert!(csv.lines().nth(1).unwrap().starts_with("0,0,500003.1,2,4649780.25,"), "{csv}");
     let scene = files.load("far.nff").unwrap();
@@ -503,7 +504,7 @@ fn exported_cameras_are_in_the_file_s_coordinates_and_lead_back() {
             "far" => CameraPath::for_scene(&scene, Config::P.shadows()),
             name => CameraPath::load(name).unwrap(),
         };
-        let mut arguments = vec!["camera-path", "export", &what, "-o", toml.to_str().unwrap()];
+        let mut arguments = vec!["camera-path", "export", &file, "-o", toml.to_str().unwrap()];
         if own != "far" {
             arguments.extend(["--camera-path", own]);
         }
@@ -562,12 +563,12 @@ fn directions_of_any_length_give_distances_in_their_units() {
         assert_eq!(*triangle, 0);
         assert!((t.parse::<f64>().unwrap() * length / 5.0 - 1.0).abs() < 1e-6, "{t} of {length}");
     }
-    // Of doubles, the longest and the shortest
+    // The largest and the smallest doubles
     let rays = format!("{HEAD}0,0,5,0,0,-3e38\n0,0,5,0,0,-1e-300\n");
     let hits = trace(&data("direction_lengths.ply"), &rays, false).unwrap();
     assert_eq!(hits.iter().map(|hit| hit.1).collect::<Vec<_>>(), [0, 0]);
     assert!((hits[1].0.parse::<f64>().unwrap() / 5e300 - 1.0).abs() < 1e-6, "{hits:?}");
-    // The distance is no double; whether there is a hit is still known
+    // The distance exceeds the range of doubles; any-hit queries still work.
     let rays = format!("{rays}0,0,5,0,0,-5e-324\n");
     let error = trace(&data("direction_lengths.ply"), &rays, false).unwrap_err();
     assert!(error.contains("ray 3: the distance of its hit is beyond double precision"), "{error}");
@@ -575,7 +576,7 @@ fn directions_of_any_length_give_distances_in_their_units() {
 }
 
 #[test]
-fn rays_that_cannot_be_are_refused_with_their_line() {
+fn invalid_rays_are_refused_with_their_line() {
     for (ray, words) in [
         ("0,0,5,0,0,0", ":3: the direction has no length"),
         ("0,0,nan,0,0,1", ":3: origin_z is \"nan\", not a finite number"),
@@ -590,7 +591,7 @@ fn rays_that_cannot_be_are_refused_with_their_line() {
     }
 }
 
-/// The library takes directions of any length as well, on both backends.
+/// Both backends accept directions of any length.
 #[test]
 fn a_backend_traces_directions_of_any_length() {
     let scene = scene::load(&data("direction_lengths.ply")).unwrap();
@@ -617,23 +618,27 @@ fn a_backend_traces_directions_of_any_length() {
 }
 
 #[test]
-fn given_rays_move_along() {
+fn input_rays_are_moved_with_the_scene() {
     let shift = DVec3::new(5e5, 0.0, 4649776.0);
     let files = Files::new(&[]);
     files.write("far.obj", b"v 499999 -1 4649776\nv 500001 -1 4649776\nv 500000 1 4649776\nf 1 2 3\n");
     let rays = format!("{HEAD}500000.1,0.01,4649780.5,0,0,-2\n0,0,4,0,0,-1\n500000.2,0.2,4649777,0,0,-1e-3\n");
-    let what = files.path("far.obj").to_str().unwrap().to_owned();
-    let hits = trace(&what, &rays, false).unwrap();
+    let file = files.path("far.obj").to_str().unwrap().to_owned();
+    let hits = trace(&file, &rays, false).unwrap();
     assert_eq!(hits[1].1, -1);
     assert_eq!(hits[0], ("2.25".into(), 0));
     assert!((hits[2].0.parse::<f64>().unwrap() / 1e3 - 1.0).abs() < 1e-6 && hits[2].1 == 0);
-    assert_eq!(trace(&format!("{what}:origin=keep"), &rays, false).unwrap()[0], hits[0], "this one needs no doubles");
+    assert_eq!(
+        trace(&format!("{file}:origin=keep"), &rays, false).unwrap()[0],
+        hits[0],
+        "this ray does not need double precision"
+    );
     let mesh = Mesh::random(10, 1);
-    assert!(greatest_error(&load(&mesh, "a.obj", shift, ""), &mesh, shift) < 1e-6, "the offset of both is the same");
+    assert!(greatest_error(&load(&mesh, "a.obj", shift, ""), &mesh, shift) < 1e-6, "both have the same offset");
 }
 
 #[test]
-fn sizes_from_1e_15_to_1e15_are_traced_and_shown() {
+fn extents_from_1e_15_to_1e15_are_traced_and_rendered() {
     let mesh = Mesh::random(40, 2);
     let near = load(&mesh, "ascii.ply", DVec3::ZERO, "");
     let expected = picture(&near, "light-orbit", 0, 32);
@@ -652,10 +657,10 @@ fn sizes_from_1e_15_to_1e15_are_traced_and_shown() {
 }
 
 #[test]
-fn what_is_too_large_or_too_small_is_refused() {
+fn scenes_beyond_the_limits_are_refused() {
     let triangle = |x: &str| format!("v 0 0 0\nv {x} 0 0\nv 0 {x} 0\nf 1 2 3\n");
     for (text, words) in [
-        (triangle("1e19"), &[":2: a vertex has the values", "beyond 1e18"][..]),
+        (triangle("1e19"), &[":2: a vertex has the values", "exceed the largest coordinate 1e18"][..]),
         (triangle("1e39"), &[":2: a vertex has the values", "not finite"]),
         (triangle("nan"), &[":2: a vertex has the values", "not finite"]),
         (triangle("1e-19"), &["the scene is too small: its extent is 1e-19", "1e-18", "scale it up"]),
@@ -668,7 +673,7 @@ fn what_is_too_large_or_too_small_is_refused() {
         let extent = scene.placement.length(scene.bounds().extent().max_element());
         assert!((extent / x.parse::<f64>().unwrap().abs() - 1.0).abs() < 1e-6, "{extent}");
     }
-    for (x, words) in [("1e19", "beyond 1e18"), ("1e99", "not finite"), ("1e-19", "too small")] {
+    for (x, words) in [("1e19", "largest coordinate 1e18"), ("1e99", "not finite"), ("1e-19", "too small")] {
         for format in FORMATS.into_iter().filter(|format| *format != "a.glb") {
             let size: f64 = x.parse().unwrap();
             let files = Files::new(&[]);
@@ -680,7 +685,7 @@ fn what_is_too_large_or_too_small_is_refused() {
             assert!(line, "{format}: {message}");
         }
     }
-    // By their options
+    // Beyond the limits because of options
     let unit = triangle("1");
     let files = Files::new(&[("a.obj", &unit)]);
     assert!(refusal(files.load("a.obj:scale=1e-19")).contains("too small"));
@@ -690,7 +695,7 @@ fn what_is_too_large_or_too_small_is_refused() {
 }
 
 #[test]
-fn origins_that_cannot_be_are_refused() {
+fn invalid_origins_are_refused() {
     let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     let files = Files::new(&[("a.obj", text)]);
     for value in ["", "here", "1,2", "1,2,3,4", "1,2,nan", "1,2,1e19", "1;2;3", "keep,keep"] {
@@ -702,14 +707,14 @@ fn origins_that_cannot_be_are_refused() {
     }
     let scene = files.load("a.obj:origin=-0.5,0,1e3,scale=2").unwrap();
     assert_eq!(scene.placement.offset, DVec3::new(-1.0, 0.0, 2e3));
-    assert!(scene.warnings[0].contains("the origin that was given is"), "{:?}", scene.warnings);
+    assert!(scene.warnings[0].contains("the option origin= is"), "{:?}", scene.warnings);
     assert_eq!(scene.name, "a:scale=2,origin=-0.5,0,1000");
     assert_eq!(files.load("a.obj:origin=auto").unwrap().name, "a");
     assert!(refusal(scene::load("hall:origin=keep")).contains("no parameter `origin`"));
 }
 
 #[test]
-fn the_surface_epsilon_follows_coordinates_where_they_are_large() {
+fn the_surface_epsilon_increases_with_large_coordinates() {
     let bounds = |at: f32| Aabb { min: Vec3::new(at - 1.0, 0.0, 0.0), max: Vec3::new(at + 1.0, 2.0, 2.0) };
     for at in [0.0, 3.0, -20.0] {
         assert_eq!(surface_epsilon(bounds(at)), bounds(at).diagonal() * 1e-5, "{at}");

@@ -1,11 +1,11 @@
-//! PLY files that are sound: every encoding, every order of properties, real files.
+//! Tests of valid PLY files: all encodings, all orders of properties, real files.
 
 use super::{load_bytes, real_scenes};
 use glam::Vec3;
 use rtbench::scene::{self, Scene};
 use std::fmt::Write;
 
-/// A cube of quads with properties and elements that must be passed over.
+/// A cube of quads with properties and elements that are ignored.
 pub const CUBE: &str = "ply
 format ascii 1.0
 comment a cube with extras
@@ -92,7 +92,7 @@ pub fn encode(points: &[[f32; 3]], faces: &[Vec<u32>]) -> Encoded {
 }
 
 #[test]
-fn extras_are_passed_over_and_polygons_become_fans() {
+fn other_properties_are_ignored_and_polygons_become_fans() {
     let scene = load_bytes(CUBE.as_bytes()).unwrap();
     assert_eq!(scene.name, "mesh");
     assert_eq!(scene.vertices.len(), 8);
@@ -102,7 +102,7 @@ fn extras_are_passed_over_and_polygons_become_fans() {
     assert_eq!(scene.triangles.len(), 12);
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
     assert_eq!((scene.materials.len(), scene.materials[0].reflectivity), (1, 0.0));
-    // Computed normals point out of the corners.
+    // Computed normals point outwards.
     for vertex in &scene.vertices {
         assert!(vertex.normal.is_normalized() && vertex.normal.dot(vertex.position - 0.5) > 0.5, "{vertex:?}");
     }
@@ -113,7 +113,7 @@ fn line_ends_do_not_matter() {
     let expected = load_bytes(CUBE.as_bytes()).unwrap().content_hash();
     for end in ["\r\n", "\r", "  \n", "\t\n\n"] {
         let text = if end.trim() != end && end.contains('\n') && end != "\r\n" {
-            // Blanks and empty lines only in the body.
+            // Additional blanks and empty lines are allowed only in the body.
             let (head, body) = CUBE.split_once("end_header\n").unwrap();
             format!("{head}end_header\n{}", body.replace('\n', end))
         } else {
@@ -121,7 +121,7 @@ fn line_ends_do_not_matter() {
         };
         assert_eq!(load_bytes(text.as_bytes()).unwrap().content_hash(), expected, "{end:?}");
     }
-    // No line end at all behind the last line.
+    // The last line has no line end.
     assert_eq!(load_bytes(CUBE.trim_end().as_bytes()).unwrap().content_hash(), expected);
 }
 
@@ -132,13 +132,13 @@ fn all_encodings_of_a_mesh_give_the_same_scene() {
     let encoded = encode(&points, &faces);
     let [ascii, little, big] = [&encoded.ascii, &encoded.little, &encoded.big].map(|bytes| load_bytes(bytes).unwrap());
     assert_eq!(indices(&ascii), [[0, 1, 2], [0, 1, 2], [0, 2, 3], [0, 3, 4], [2, 2, 1]]);
-    // The scene is 1e10 large, so that it is scaled in memory
+    // The scene has an extent of 1e10, so that it is scaled in memory.
     let in_file: Vec<Vec3> = positions(&ascii).iter().map(|&p| ascii.placement.file(p).as_vec3()).collect();
     assert_eq!(in_file, points.map(Vec3::from));
     assert_eq!(ascii.content_hash(), little.content_hash());
     assert_eq!(ascii.content_hash(), big.content_hash());
     assert_eq!(ascii.degenerate_triangles, 1);
-    assert_eq!(ascii.warnings, ["1 faces with fewer than three corners skipped"]);
+    assert_eq!(ascii.warnings, ["1 faces with fewer than three corners ignored"]);
     assert_eq!(big.warnings, ascii.warnings);
 }
 
@@ -155,7 +155,7 @@ fn numbers_in_every_notation_are_read() {
 }
 
 #[test]
-fn given_normals_are_used_and_bad_ones_replaced() {
+fn normals_of_the_file_are_used_and_invalid_ones_replaced() {
     let text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float nx\nproperty float ny\nproperty float nz\n\
         property float x\nproperty float y\nproperty float z\nelement face 1\n\
         property list uchar int vertex_indices\nend_header\n\
@@ -168,10 +168,10 @@ fn given_normals_are_used_and_bad_ones_replaced() {
 }
 
 #[test]
-fn what_follows_the_last_element_is_reported() {
+fn bytes_after_the_last_element_are_reported() {
     let mut encoded = encode(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[vec![0, 1, 2]]);
     encoded.big.extend(b"rest");
-    assert_eq!(load_bytes(&encoded.big).unwrap().warnings, ["4 bytes behind the last element ignored"]);
+    assert_eq!(load_bytes(&encoded.big).unwrap().warnings, ["4 bytes after the last element ignored"]);
     encoded.ascii.extend(b"\n \r\n\x1a");
     assert!(load_bytes(&encoded.ascii).unwrap().warnings.is_empty());
 }
@@ -204,7 +204,7 @@ fn the_fixtures_are_read_or_refused() {
     }
 }
 
-/// A polygon with a notch, whose fan from the first corner overlaps itself; also where its vertices stand behind it.
+/// A polygon with a notch, of which the fan overlaps itself; also with the vertices after the faces in the file.
 #[test]
 fn concave_polygons_are_covered_once() {
     let points = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [4.0, 4.0, 0.0], [2.0, 1.0, 0.0], [0.0, 4.0, 0.0]];
@@ -225,6 +225,6 @@ fn concave_polygons_are_covered_once() {
             .collect();
         assert!(twice.iter().all(|&twice| twice > 0.0), "{twice:?}");
         assert_eq!([&twice[..1], &twice[1..4], &twice[4..]].map(|part| part.iter().sum::<f32>()), [16.0, 20.0, 32.0]);
-        assert_eq!(indices(&scene)[4..], [[0, 1, 2], [0, 2, 4]], "what is convex is a fan");
+        assert_eq!(indices(&scene)[4..], [[0, 1, 2], [0, 2, 4]], "a convex polygon is a fan");
     }
 }

@@ -1,11 +1,11 @@
-//! Without a search there are no more vertices than with one, and no fewer.
+//! Surfaces that are built without a search have exactly the vertices that a search would give.
 
 use super::*;
 use crate::scene::Scene;
 use glam::{DAffine3, DMat3};
 use std::collections::HashSet;
 
-/// A shape, and whether its vertices were made without a search.
+/// A shape, and whether its vertices were built without a search.
 fn built(frame: DAffine3, build: &dyn Fn(&mut MeshBuilder)) -> (Scene, bool) {
     let mut builder = MeshBuilder::default();
     builder.set_transform(frame);
@@ -21,18 +21,18 @@ const SHAPES: [&dyn Fn(&mut MeshBuilder); 7] = [
     &|b| b.cone((DVec3::X, -1.0), (DVec3::Z, -1.0), 3).unwrap(),
     &|b| b.ring(DVec3::ONE, DVec3::new(1.0, 2.0, 3.0), [0.0, 2.0], 20).unwrap(),
     &|b| b.torus(DVec3::ONE, DVec3::X, 3.0, 1.0, 12).unwrap(),
-    // Its inner circle is a point of many normals
+    // Its inner circle is a point with many normals.
     &|b| b.torus(DVec3::ONE, DVec3::Y, 1.0, -1.0, 8).unwrap(),
 ];
 
 #[test]
-fn no_vertex_is_made_twice_and_few_are_searched_for() {
+fn no_vertex_is_duplicated_and_few_surfaces_are_searched() {
     let turned = DMat3::from_axis_angle(DVec3::new(1.0, 1.0, 0.0).normalize(), 1.0);
     let frames = [
         DAffine3::IDENTITY,
         DAffine3::from_mat3_translation(turned, DVec3::splat(7.0)),
         DAffine3::from_mat3_translation(turned * DMat3::from_diagonal(DVec3::new(-2.0, 1.0, 0.5)), DVec3::X),
-        // In a plane, on a line, in a point, and far away, vertices may fall together
+        // Vertices can coincide if the surface is flattened to a plane, a line or a point, or is far away.
         DAffine3::from_scale(DVec3::new(1.0, 0.0, 1.0)),
         DAffine3::from_scale(DVec3::new(0.0, 2.0, 0.0)),
         DAffine3::from_scale(DVec3::ZERO),
@@ -49,16 +49,16 @@ fn no_vertex_is_made_twice_and_few_are_searched_for() {
 }
 
 #[test]
-fn next_to_the_limits_it_is_searched_as_well() {
+fn surfaces_near_the_limits_are_searched() {
     let mut builder = MeshBuilder::default();
     builder.charge(size_of::<Vertex>() << 20).unwrap();
     let fault = builder.sphere(DVec3::ZERO, 1.0, 24).unwrap_err();
     assert!(fault.problem.contains("more than 64 MiB"), "{}", fault.problem);
-    assert!(builder.unlisted.is_empty(), "it would have been refused before its first vertex");
+    assert!(builder.unlisted.is_empty(), "the surface was searched, not refused before its first vertex");
 }
 
 #[test]
-fn polygons_of_the_same_shape_still_share_its_vertices() {
+fn polygons_share_vertices_with_a_surface_of_the_same_shape() {
     let center = DVec3::new(3.0, 1.0, 2.0);
     let (scene, _) = built(DAffine3::IDENTITY, &|b| {
         b.ring(center, DVec3::Y, [0.0, 1.0], 4).unwrap();
@@ -70,7 +70,7 @@ fn polygons_of_the_same_shape_still_share_its_vertices() {
 }
 
 #[test]
-fn spheres_after_others_have_the_normals_that_they_have_alone() {
+fn cached_normals_equal_those_of_a_single_sphere() {
     let flat = DAffine3::from_scale(DVec3::new(1.0, 0.5, -2.0));
     let spheres = [(DAffine3::IDENTITY, 1.0, 8), (DAffine3::IDENTITY, 2.0, 8), (DAffine3::IDENTITY, -2.0, 8)];
     let others = [(flat, -2.0, 8), (flat, 1.0, 8), (flat, 1.0, 9), (DAffine3::IDENTITY, 1.0, 8)];
@@ -86,7 +86,7 @@ fn spheres_after_others_have_the_normals_that_they_have_alone() {
         add(&mut alone);
         normals.extend(alone.finish().vertices.iter().map(|v| v.normal));
     }
-    // Another surface's take their place
-    assert!(together.torus(DVec3::ZERO, DVec3::X, 2.0, 1.0, 8).is_ok() && together.turns.sphere.is_none());
+    // Another surface replaces the cached normals.
+    assert!(together.torus(DVec3::ZERO, DVec3::X, 2.0, 1.0, 8).is_ok() && together.circles.sphere.is_none());
     assert!(together.finish().vertices.iter().map(|v| v.normal).take(normals.len()).eq(normals.iter().copied()));
 }

@@ -1,4 +1,4 @@
-//! What stands in the room: table and what is on it, chairs, shelves with books.
+//! The furniture of the room: a table with objects on it, chairs, bookshelves.
 
 use super::super::mesh::{MaterialId, Mesh, segments};
 use super::super::noise::random;
@@ -7,7 +7,7 @@ use super::{Materials, X};
 use glam::{Affine3A, Quat, Vec2, Vec3};
 use std::f32::consts::{FRAC_PI_2, PI};
 
-/// The outline of the table: straight along, half circles at the ends.
+/// The outline of the table: a rectangle with half circles at the ends.
 fn table_outline(half: f32, radius: f32, around: usize) -> Vec<Vec2> {
     let end = |from: f32, center: f32| {
         (0..=around).map(move |i| {
@@ -36,7 +36,7 @@ pub(super) fn table(mesh: &mut Mesh, m: &Materials, detail: f32) {
         mesh.place = Affine3A::from_translation(Vec3::new(x, 0.0, 0.0));
         mesh.lathe(m.metal, &profile(&foot, segments(24.0, detail, 8)), segments(36.0, detail, 8));
     }
-    // A jug and a bowl in the middle.
+    // A jug and a bowl at the centre of the table
     mesh.place = Affine3A::from_translation(Vec3::new(-0.5, 0.7605, 0.05));
     let jug = [
         (0.0, 0.0),
@@ -75,7 +75,8 @@ pub(super) fn table(mesh: &mut Mesh, m: &Materials, detail: f32) {
     mesh.place = Affine3A::IDENTITY;
 }
 
-/// Chairs around the table, each turned a little; local +z is where the sitter looks. With a running number.
+/// The transforms of the chairs around the table, with their numbers. Each chair is rotated slightly; it faces its
+/// local +z.
 pub(super) fn chair_places() -> Vec<(Affine3A, u32)> {
     let mut places = Vec::new();
     for i in 0..5 {
@@ -92,7 +93,7 @@ pub(super) fn chair_places() -> Vec<(Affine3A, u32)> {
     places.into_iter().enumerate().map(turned).collect()
 }
 
-/// A cantilever chair of bent tube with a padded seat and back.
+/// Adds a cantilever chair of bent tube with a padded seat and back.
 pub(super) fn chair(mesh: &mut Mesh, m: &Materials, detail: f32) {
     let rows = segments(40.0, detail, 12);
     let around = segments(10.0, detail, 5);
@@ -127,7 +128,7 @@ pub(super) fn chair(mesh: &mut Mesh, m: &Materials, detail: f32) {
     mesh.place = place;
 }
 
-/// A padded cushion: a rounded box (superellipsoid), of half lengths `half`.
+/// Adds a cushion: a superellipsoid with the semi-axes `half`.
 fn cushion(mesh: &mut Mesh, material: MaterialId, half: Vec3, detail: f32) {
     let power = |x: f32, e: f32| x.signum() * x.abs().powf(e);
     let cells = [segments(48.0, detail, 12), segments(20.0, detail, 6)];
@@ -138,7 +139,7 @@ fn cushion(mesh: &mut Mesh, material: MaterialId, half: Vec3, detail: f32) {
     });
 }
 
-/// A cup with a handle on a saucer, in front of a chair.
+/// Adds a cup with a handle on a saucer, in front of a chair.
 pub(super) fn cup(mesh: &mut Mesh, m: &Materials, detail: f32) {
     let place = mesh.place;
     mesh.place = place * Affine3A::from_translation(Vec3::new(0.22, 0.001, 0.62));
@@ -166,7 +167,7 @@ pub(super) fn cup(mesh: &mut Mesh, m: &Materials, detail: f32) {
     mesh.place = place;
 }
 
-/// Bookshelves on the wall x = -X.
+/// Adds bookshelves on the wall x = -X.
 pub(super) fn shelf(mesh: &mut Mesh, m: &Materials) {
     let (depth, width, height) = (0.32, 3.2, 2.1);
     let x = -X + depth * 0.5 + 0.025;

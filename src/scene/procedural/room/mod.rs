@@ -1,5 +1,5 @@
-//! `room`: a furnished conference room. Blinds, window frames, ceiling bars, skirting boards and chair legs are long thin
-//! triangles (the character of the conference room); chairs, cups and lamps are dense between them.
+//! `room`: a furnished room, similar to the conference room. Blinds, window frames, ceiling bars, skirting boards and
+//! chair legs are long thin triangles; chairs, cups and lamps are dense meshes between them.
 
 mod furniture;
 
@@ -12,18 +12,22 @@ use glam::{Affine3A, Quat, Vec2, Vec3};
 
 pub(super) const INFO: SceneInfo = SceneInfo {
     name: "room",
-    character: "furnished room: long thin triangles beside dense chairs, six lights, few mirrors",
+    character: "furnished room: long thin triangles and dense chairs, six lights, few mirrors",
     parameters: &[Parameter::triangles(80_000, 20_000)],
     build,
 };
 
-/// Half the room's length (x) and width (z), and its height.
+/// Half the length of the room.
 const X: f32 = 6.0;
+/// Half the width of the room.
 const Z: f32 = 4.0;
+/// Height of the room.
 const Y: f32 = 3.1;
-/// Windows on the wall z = -Z: middle of each, their size, and the height of their lower edge.
+/// The x coordinates of the centres of the windows, on the wall z = -Z.
 const WINDOWS: [f32; 3] = [-3.9, 0.0, 3.9];
+/// Width and height of a window.
 const WINDOW: Vec2 = Vec2::new(2.9, 1.7);
+/// Height of the lower edge of the windows.
 const SILL: f32 = 0.95;
 
 fn build(values: &Values) -> Scene {
@@ -32,7 +36,7 @@ fn build(values: &Values) -> Scene {
     assemble(mesh, lights, Vec3::new(0.55, 0.70, 0.90), Some("room"))
 }
 
-/// The lamps' places, on the ceiling.
+/// The positions of the lamps on the ceiling.
 fn lamps() -> [Vec3; 6] {
     [(-3.6, -1.8), (0.0, -1.8), (3.6, -1.8), (-3.6, 1.8), (0.0, 1.8), (3.6, 1.8)].map(|(x, z)| Vec3::new(x, Y, z))
 }
@@ -55,7 +59,7 @@ struct Materials {
 }
 
 fn materials(mesh: &mut Mesh) -> Materials {
-    // More ambient light than usual: it stands for what walls and ceiling throw back.
+    // The ambient light is higher than usual, as a substitute for indirect light from walls and ceiling.
     let matt = |r, g, b| Material { ambient: Vec3::new(r, g, b) * 0.28, ..Material::matt(Vec3::new(r, g, b)) };
     let mut add = |material| mesh.material(material);
     Materials {
@@ -93,7 +97,7 @@ fn geometry(mesh: &mut Mesh, detail: f32) {
     for (place, seed) in chair_places() {
         mesh.place = place;
         chair(mesh, &m, detail);
-        // A cup on the table before every other chair, paper before all.
+        // There is a cup on the table in front of every other chair, and paper in front of all chairs.
         mesh.place = Affine3A::from_translation(Vec3::Y * 0.76) * mesh.place;
         if seed % 2 == 0 {
             cup(mesh, &m, detail);
@@ -113,7 +117,7 @@ fn shell(mesh: &mut Mesh, m: &Materials) {
     mesh.quad(m.wall, Vec3::new(X, 0.0, Z), -x, y, [4, 2]);
     mesh.quad(m.wall, Vec3::new(-X, 0.0, Z), -z, y, [3, 2]);
     mesh.quad(m.wall, Vec3::new(X, 0.0, -Z), z, y, [3, 2]);
-    // The wall with the windows is made of what is left between them.
+    // The wall with the windows consists of the rectangles between and around them.
     let mut piece = |x0: f32, x1: f32, y0: f32, y1: f32| {
         mesh.quad(m.wall, Vec3::new(x0, y0, -Z), Vec3::X * (x1 - x0), Vec3::Y * (y1 - y0), [1, 1]);
     };
@@ -136,12 +140,13 @@ fn shell(mesh: &mut Mesh, m: &Materials) {
     }
 }
 
-/// A recessed window with frame, cross bars, panes, sill, and half-open blinds. Origin: middle of the lower edge.
+/// Adds a recessed window with frame, cross bars, panes, sill, and half-open blinds. The origin is the centre of its
+/// lower edge.
 fn window(mesh: &mut Mesh, m: &Materials, detail: f32) {
     let (w, h, depth) = (WINDOW.x, WINDOW.y, 0.22);
     let half = w * 0.5;
     let (across, up, back) = (Vec3::X * w, Vec3::Y * h, Vec3::Z * depth);
-    // The reveal.
+    // The reveal
     mesh.quad(m.white, Vec3::new(-half, 0.0, -depth), back, across, [1, 1]);
     mesh.quad(m.white, Vec3::new(-half, h, -depth), across, back, [1, 1]);
     mesh.quad(m.white, Vec3::new(-half, 0.0, -depth), up, back, [1, 1]);
@@ -155,7 +160,7 @@ fn window(mesh: &mut Mesh, m: &Materials, detail: f32) {
         mesh.block(m.white, Vec3::new(0.0, y, at), Vec3::new(w - 0.002, 0.055, 0.05));
     }
     mesh.block(m.white, Vec3::new(0.0, -0.022, 0.07), Vec3::new(w + 0.2, 0.04, 0.30));
-    // Slats: one piece across the whole window, a few across their own curve; both sides are seen.
+    // A slat has one segment along the window and a few along its curve; both of its sides are modelled.
     let slats = 34;
     let pitch = (h - 0.10) / slats as f32;
     let folds = segments(4.0, detail, 2);
@@ -175,7 +180,7 @@ fn window(mesh: &mut Mesh, m: &Materials, detail: f32) {
     }
 }
 
-/// Bars that divide the ceiling, and flat lamps with a rim.
+/// Adds bars that divide the ceiling, and flat lamps with a rim.
 fn ceiling(mesh: &mut Mesh, m: &Materials, detail: f32) {
     for i in 1..10 {
         let x = -X + i as f32 * 1.2;
@@ -194,7 +199,7 @@ fn ceiling(mesh: &mut Mesh, m: &Materials, detail: f32) {
     mesh.place = Affine3A::IDENTITY;
 }
 
-/// A whiteboard on x = X, a screen beside it, the door on z = Z.
+/// Adds a whiteboard and a screen on the wall x = X, and a door on the wall z = Z.
 fn board_and_door(mesh: &mut Mesh, m: &Materials, detail: f32) {
     mesh.block(m.white, Vec3::new(X - 0.015, 1.55, -1.2), Vec3::new(0.03, 1.3, 2.4));
     for (y, h) in [(0.90, 0.04), (2.20, 0.04)] {

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::scene::Scene;
-use crate::workloads::trace::Brute;
+use crate::workloads::trace::brute::Brute;
 use crate::workloads::trace::common::prims;
 
 /// Lists all triangles that can be hit, in scene order.

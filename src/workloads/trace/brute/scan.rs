@@ -1,8 +1,30 @@
 //! Every triangle: ground truth. Twin of `kernels/trace/brute/scan.wgsl`.
 
 use crate::math::Ray;
+use crate::workloads::trace::algorithm::{Algorithm, Traversal};
+use crate::workloads::trace::brute::{BUILDER, KIND};
 use crate::workloads::trace::count::Count;
+use crate::workloads::trace::options::GROUP;
 use crate::workloads::trace::traverse::{Best, TraverseIndependent, Triangles};
+
+/// Brute force, the reference of all others.
+pub static BRUTE: Algorithm = Algorithm {
+    name: "brute",
+    alias: "",
+    summary: "no structure: every ray against every triangle (ground truth for small scenes)",
+    paper: "",
+    builder: &BUILDER,
+    traversal: &SCAN,
+    options: &[GROUP],
+};
+
+/// Tests all triangles in a row.
+pub static SCAN: Traversal = Traversal {
+    kernel: "trace/brute/scan.wgsl",
+    structure: &KIND,
+    twin: Some(|input| Ok(input.with(Brute { triangles: input.triangles() }))),
+    ..Traversal::INDEPENDENT
+};
 
 /// See the module.
 pub struct Brute<'a> {
@@ -11,13 +33,9 @@ pub struct Brute<'a> {
 }
 
 impl TraverseIndependent for Brute<'_> {
-    fn nearest_hit<C: Count>(&self, ray: &Ray, count: &mut C) -> u32 {
-        let mut best = Best::NONE;
-        self.triangles.test_triangles(ray, 0, self.triangles.triangle_refs.len() as u32, &mut best, count);
+    fn traverse<const ANY: bool, C: Count>(&self, ray: &Ray, limit: f32, count: &mut C) -> u32 {
+        let mut best = Best::before(limit);
+        self.triangles.test::<ANY, C>(ray, 0, self.triangles.triangle_refs.len() as u32, &mut best, count);
         best.triangle_ref
-    }
-
-    fn any_hit<C: Count>(&self, ray: &Ray, limit: f32, count: &mut C) -> bool {
-        self.triangles.any_triangle_occludes(ray, 0, self.triangles.triangle_refs.len() as u32, limit, count)
     }
 }

@@ -1,4 +1,4 @@
-//! Where to split a BVH node: SAH over binned centroids (SPEC section 4).
+//! Where to split a BVH node: SAH over binned centroids.
 //!
 //! I. Wald: On fast Construction of SAH-based Bounding Volume Hierarchies, 2007; J. Günther et al.: Realtime Ray
 //! Tracing on GPU with BVH-based Packet Traversal, 2007. All three axes are binned in one pass over the triangles.
@@ -26,7 +26,7 @@ pub struct Item {
 }
 
 impl Item {
-    /// Stands where no triangle has been put yet.
+    /// A placeholder where no triangle has been put yet.
     pub const NONE: Item = Item { prim: Prim::NONE, centroid3: Vec4::ONE };
 }
 
@@ -66,7 +66,7 @@ impl Rows {
 /// Bin of a centroid on each axis, by one multiplication and one addition.
 ///
 /// The number is pushed into the low mantissa bits of a float: `2^15 + x` has the bits of `x * 256`. Counting and
-/// partition both call [`Binning::of`], so they agree whatever rounding does, which is what makes the split safe: a
+/// partition both call [`Binning::of`], so they agree in spite of rounding, which is what makes the split safe: a
 /// side is empty exactly if its bins were.
 #[derive(Clone, Copy, Debug)]
 pub struct Binning {
@@ -164,7 +164,7 @@ impl Splitter {
     }
 
     /// The cheapest border between bins, `None` if all centroids share one bin on every axis.
-    // Not inlined: beside the partition its loops run out of registers, and the build takes 1.4 times as long.
+    // Not inlined: together with the partition its loops run out of registers, and the build takes 1.4 times as long.
     #[inline(never)]
     pub fn find(&mut self, items: &[Item], binning: &Binning) -> Option<Split> {
         let bins = binning.last as usize + 1;

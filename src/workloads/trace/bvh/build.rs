@@ -1,4 +1,4 @@
-//! BVH builder: top down, SAH over binned centroids, until at most `max_leaf` triangles are left (SPEC section 4).
+//! BVH builder: top down, SAH over binned centroids, until at most `max_leaf` triangles are left.
 
 use crate::error::Result;
 use crate::math::Aabb;
@@ -17,8 +17,8 @@ pub struct Config {
     pub bins: usize,
     /// No leaf has more triangles than this, 1 to [`crate::workloads::trace::bvh::MAX_LEAF`].
     pub max_leaf: usize,
-    /// A node that could be a leaf is split all the same where that is cheaper. An infinite cost of a step makes it a leaf
-    /// always.
+    /// A node that could be a leaf is split all the same where that is cheaper. An infinite cost of a step makes it a
+    /// leaf always.
     pub cost: CostModel,
 }
 
@@ -78,26 +78,27 @@ enum Below {
     Parts(Box<[Part; 2]>),
 }
 
-/// What one thread works with on a subtree.
-struct Desk {
+/// Buffers of one thread, reused from node to node.
+struct Scratch {
     splitter: Splitter,
     partitioner: Partitioner,
     nodes: Vec<BvhNode>,
 }
 
 impl Builder {
-    /// Builds the subtree of `items`, whose triangle references will begin at `first`; sides of large nodes in parallel.
+    /// Builds the subtree of `items`, whose triangle references will begin at `first`; sides of large nodes in
+    /// parallel.
     fn grow(&self, items: &mut [Item], first: u32, bounds: Rows, depth: u32) -> Part {
-        let mut desk = Desk {
+        let mut scratch = Scratch {
             splitter: Splitter::new(self.unit),
             partitioner: Partitioner::new(),
             nodes: Vec::with_capacity(if items.len() <= TASK { items.len() / 4 * 3 } else { 0 }),
         };
         if items.len() <= TASK {
-            let (root, depth) = self.subtree(items, first, bounds, depth, &mut desk);
-            return Part { root, below: Below::Nodes(desk.nodes), depth };
+            let (root, depth) = self.subtree(items, first, bounds, depth, &mut scratch);
+            return Part { root, below: Below::Nodes(scratch.nodes), depth };
         }
-        let sides = self.divide(items, depth, &mut desk);
+        let sides = self.partition(items, depth, &mut scratch);
         let (left, right) = items.split_at_mut(sides.mid);
         let (a, b) = rayon::join(
             || self.grow(left, first, sides.left, depth + 1),
@@ -108,27 +109,34 @@ impl Builder {
     }
 
     /// Builds a subtree on one thread, depth first; returns its root and its depth.
-    fn subtree(&self, items: &mut [Item], first: u32, bounds: Rows, depth: u32, desk: &mut Desk) -> (BvhNode, u32) {
-        if items.len() <= self.config.max_leaf && !self.is_worth_splitting(items, &bounds, depth, desk) {
+    fn subtree(
+        &self,
+        items: &mut [Item],
+        first: u32,
+        bounds: Rows,
+        depth: u32,
+        scratch: &mut Scratch,
+    ) -> (BvhNode, u32) {
+        if items.len() <= self.config.max_leaf && !self.is_worth_splitting(items, &bounds, depth, scratch) {
             return (BvhNode::leaf(&bounds, first, items.len() as u32), 0);
         }
-        let sides = self.divide(items, depth, desk);
-        let pair = desk.nodes.len();
-        desk.nodes.extend([BvhNode::NONE; 2]);
+        let sides = self.partition(items, depth, scratch);
+        let pair = scratch.nodes.len();
+        scratch.nodes.extend([BvhNode::NONE; 2]);
         let (left, right) = items.split_at_mut(sides.mid);
-        let (a, a_depth) = self.subtree(left, first, sides.left, depth + 1, desk);
-        let (b, b_depth) = self.subtree(right, first + sides.mid as u32, sides.right, depth + 1, desk);
-        desk.nodes[pair..pair + 2].copy_from_slice(&[a, b]);
+        let (a, a_depth) = self.subtree(left, first, sides.left, depth + 1, scratch);
+        let (b, b_depth) = self.subtree(right, first + sides.mid as u32, sides.right, depth + 1, scratch);
+        scratch.nodes[pair..pair + 2].copy_from_slice(&[a, b]);
         (BvhNode::inner(&bounds, pair as u32), 1 + a_depth.max(b_depth))
     }
 
     /// True if a node of few triangles costs less, by the surface area heuristic, with two leaves than as one.
-    fn is_worth_splitting(&self, items: &[Item], bounds: &Rows, depth: u32, desk: &mut Desk) -> bool {
+    fn is_worth_splitting(&self, items: &[Item], bounds: &Rows, depth: u32, scratch: &mut Scratch) -> bool {
         let CostModel { traversal, intersection } = self.config.cost;
         if !traversal.is_finite() || items.len() < 2 || is_near_the_bottom(items, depth) {
             return false;
         }
-        let Some(split) = desk.splitter.find(items, &self.binning(items)) else { return false };
+        let Some(split) = scratch.splitter.find(items, &self.binning(items)) else { return false };
         let tests = |sides: &Rows, count: usize| half_area(&sides.aabb()) * count as f64;
         let split_tests = tests(&split.left, split.left_count) + tests(&split.right, items.len() - split.left_count);
         let whole_tests = tests(bounds, items.len());
@@ -137,27 +145,28 @@ impl Builder {
 
     /// Bins for the centroids of a node.
     fn binning(&self, items: &[Item]) -> Binning {
-        // Most nodes are small. Half the bins do there (bunny: 0.1 % on the cost), since more would stay empty. At least
-        // four bins are used.
+        // Most nodes are small. Half the bins do there (bunny: 0.1 % on the cost), since more would stay empty. At
+        // least four bins are used.
         let Config { bins, .. } = self.config;
         let bins = if items.len() <= 2 * bins { bins.div_ceil(2).max(bins.min(4)) } else { bins };
         Binning::new(&centroid_bounds(items), bins)
     }
 
     /// Reorders `items` into two non-empty sides.
-    fn divide(&self, items: &mut [Item], depth: u32, desk: &mut Desk) -> Sides {
+    fn partition(&self, items: &mut [Item], depth: u32, scratch: &mut Scratch) -> Sides {
         if is_near_the_bottom(items, depth) {
             return halve(items);
         }
         let binning = self.binning(items);
-        let Some(split) = desk.splitter.find(items, &binning) else { return halve(items) };
-        let mid = desk.partitioner.shared(items, |item| binning.of(item)[split.axis] <= split.bin);
+        let Some(split) = scratch.splitter.find(items, &binning) else { return halve(items) };
+        let mid = scratch.partitioner.shared(items, |item| binning.of(item)[split.axis] <= split.bin);
         debug_assert_eq!(mid, split.left_count);
         Sides { mid, left: split.left, right: split.right }
     }
 }
 
-/// True if halving from here on would just keep within the greatest depth: no more adventures.
+/// True if halving from here on just keeps within the greatest depth: below this depth there are only median splits, so
+/// that [`MAX_DEPTH`] holds.
 fn is_near_the_bottom(items: &[Item], depth: u32) -> bool {
     let halvings = usize::BITS - items.len().leading_zeros();
     depth + halvings >= MAX_DEPTH

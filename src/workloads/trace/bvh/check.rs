@@ -17,7 +17,7 @@ pub(crate) fn check(bvh: &Bvh, expected: &Expected) -> Verdict {
         bvh,
         expected,
         seen: vec![false; count],
-        next_record: 0,
+        next_ref: 0,
         covered: vec![Covered::NEVER; expected.boxes.len()],
         depth: 0,
     };
@@ -26,10 +26,10 @@ pub(crate) fn check(bvh: &Bvh, expected: &Expected) -> Verdict {
     ensure!(same(root, bvh.bounds), "the root's box {root:?} is not the bounds");
     ensure!(walk.depth == bvh.depth, "depth is {}, the field says {}", walk.depth, bvh.depth);
     ensure!(
-        walk.next_record == bvh.triangle_refs.len(),
+        walk.next_ref == bvh.triangle_refs.len(),
         "{} triangle references, {} in leaves",
         bvh.triangle_refs.len(),
-        walk.next_record
+        walk.next_ref
     );
     if let Some(node) = walk.seen.iter().position(|&seen| !seen) {
         return Err(format!("node {node} cannot be reached"));
@@ -37,7 +37,7 @@ pub(crate) fn check(bvh: &Bvh, expected: &Expected) -> Verdict {
     for &triangle in &expected.hittable {
         let covered = &walk.covered[triangle as usize];
         ensure!(covered.times > 0, "triangle {triangle} is in no leaf");
-        // A triangle split by the builder stands in several leaves whose boxes together must span it.
+        // A triangle split by the builder is in several leaves whose boxes together must span it.
         ensure!(
             same(covered.span, expected.aabb(triangle)),
             "the leaves of triangle {triangle} span {:?} of its box {:?}",
@@ -63,7 +63,7 @@ struct Walk<'a> {
     bvh: &'a Bvh,
     expected: &'a Expected<'a>,
     seen: Vec<bool>,
-    next_record: usize,
+    next_ref: usize,
     covered: Vec<Covered>,
     depth: u32,
 }
@@ -94,16 +94,16 @@ impl Walk<'_> {
         self.depth = self.depth.max(depth);
         ensure!(node.count <= MAX_LEAF, "leaf {index} has {} triangle references, more than {MAX_LEAF}", node.count);
         ensure!(
-            node.first as usize == self.next_record,
+            node.first as usize == self.next_ref,
             "leaf {index} begins at triangle reference {}, not at {} behind its neighbour",
             node.first,
-            self.next_record
+            self.next_ref
         );
-        let range = self.next_record..self.next_record + node.count as usize;
+        let range = self.next_ref..self.next_ref + node.count as usize;
         let Some(triangle_refs) = self.bvh.triangle_refs.get(range.clone()) else {
             return Err(format!("leaf {index} reaches behind the last triangle reference"));
         };
-        self.next_record = range.end;
+        self.next_ref = range.end;
         let leaf = node.aabb();
         let mut tight = Aabb::EMPTY;
         for (i, triangle_ref) in triangle_refs.iter().enumerate() {

@@ -1,9 +1,17 @@
-//! Bounding volume hierarchy (SPEC section 4).
+//! Bounding volume hierarchy.
 
+use super::{KIND, check};
 use crate::math::Aabb;
-use crate::workloads::trace::TriangleRef;
+use crate::scene::Scene;
+use crate::workloads::trace::common::check::{Expected, Verdict};
+use crate::workloads::trace::common::memory;
+use crate::workloads::trace::common::properties::Leaves;
+use crate::workloads::trace::common::sah::CostModel;
+use crate::workloads::trace::{Properties, Structure, StructureKind, TriangleRef};
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec3A, Vec4};
+use std::any::Any;
+use std::borrow::Cow;
 
 /// A node: 32 bytes, so that two siblings are one 64-byte read.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -22,7 +30,7 @@ pub struct BvhNode {
 /// Most triangle references a leaf may have: traversals pack a leaf into one word, four bits of it are the count.
 pub const MAX_LEAF: u32 = 15;
 
-/// No builder makes a tree deeper than this, whatever it is given: traversals size their stacks by [`Bvh::depth`].
+/// Greatest depth of a tree from any builder. Traversals size their stacks by [`Bvh::depth`].
 pub const MAX_DEPTH: u32 = 60;
 
 impl BvhNode {
@@ -34,9 +42,9 @@ impl BvhNode {
         Aabb { min: self.min.into(), max: self.max.into() }
     }
 
-    /// What the node leads to in one word, as traversals and their stacks hold it (`kernels/trace/bvh/node.wgsl`): the left child
-    /// of an inner node; of a leaf the top bit, four bits of count and 27 bits of first triangle reference. The root of an empty
-    /// scene is a leaf without triangle references.
+    /// What the node leads to in one word, as traversals and their stacks hold it (`kernels/trace/bvh/node.wgsl`): the
+    /// left child of an inner node; of a leaf the top bit, four bits of count and 27 bits of first triangle reference.
+    /// The root of an empty scene is a leaf without triangle references.
     #[inline(always)]
     pub fn reference(&self) -> u32 {
         if self.count > 0 || self.first == 0 { 1 << 31 | self.count << 27 | self.first } else { self.first }
@@ -50,9 +58,9 @@ impl BvhNode {
     }
 }
 
-/// A built BVH. `nodes[0]` is the root, `nodes[1]` its dummy sibling (a copy of an empty leaf that no traversal visits),
-/// so siblings always lie at an even index and the next. A root that is a leaf has `count > 0`; an empty scene has
-/// `nodes[0].count == 0` with `first == 0`, which no inner node can have.
+/// A built BVH. `nodes[0]` is the root, `nodes[1]` its dummy sibling (a copy of an empty leaf that no traversal
+/// visits), so siblings always lie at an even index and the next. A root that is a leaf has `count > 0`; an empty scene
+/// has `nodes[0].count == 0` with `first == 0`, which no inner node can have.
 #[derive(Clone, Debug)]
 pub struct Bvh {
     /// Box around everything.
@@ -63,4 +71,56 @@ pub struct Bvh {
     pub triangle_refs: Vec<TriangleRef>,
     /// Levels of inner nodes on the longest way from the root to a leaf: what a stack must hold.
     pub depth: u32,
+}
+
+impl Structure for Bvh {
+    fn kind(&self) -> &'static StructureKind {
+        &KIND
+    }
+
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+
+    fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    fn triangle_refs(&self) -> &[TriangleRef] {
+        &self.triangle_refs
+    }
+
+    fn node_bytes(&self) -> usize {
+        size_of_val(self.nodes.as_slice())
+    }
+
+    /// With references in place of links, so that kernels need not read two words to know where a node leads.
+    fn nodes(&self) -> Cow<'_, [u8]> {
+        let packed = self.nodes.iter().map(|node| BvhNode { first: node.reference(), ..*node });
+        let mut bytes = Vec::with_capacity(self.node_bytes());
+        packed.for_each(|node| bytes.extend_from_slice(bytemuck::bytes_of(&node)));
+        Cow::Owned(bytes)
+    }
+
+    fn uniform(&self) -> Vec<u8> {
+        Vec::new()
+    }
+
+    fn stack_depth(&self) -> u32 {
+        self.depth
+    }
+
+    fn properties(&self, scene: &Scene) -> Properties {
+        let leaves = Leaves::of(self.nodes.iter().map(|n| n.count).filter(|&count| count > 0));
+        let common = Properties::of_references(&self.triangle_refs, scene);
+        leaves.into_properties(self.nodes.len(), self.depth, CostModel::default().bvh(self), common)
+    }
+
+    fn thesis_bytes(&self, scene: &Scene) -> u64 {
+        memory::bvh_bytes(self.nodes.len() as u64, scene.vertices.len() as u64)
+    }
+
+    fn check(&self, expected: &Expected) -> Verdict {
+        check::check(self, expected)
+    }
 }

@@ -122,7 +122,7 @@ fn collect(positions: &mut [u8; BLOCK], flags: impl Iterator<Item = bool>) -> us
     count
 }
 
-/// Where the centroids say nothing: half of them each, in the order in which they stand.
+/// Splits where centroids do not tell: half of the items on each side, in their order.
 pub(crate) fn halve(items: &[Item]) -> Sides {
     let mid = items.len() / 2;
     let around = |items: &[Item]| {

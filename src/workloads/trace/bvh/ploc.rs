@@ -43,8 +43,8 @@ pub fn preset(name: &str) -> Option<BvhBuildParams> {
     Some(BvhBuildParams { max_prims_per_leaf: params.max_prims_per_leaf.min(MAX_LEAF), ..params })
 }
 
-/// PLOC's passes may look at `LOOKS_PER_TRIANGLE` nodes per triangle plus `LOOKS_BASE`, which is about 0.3 s at 137 ns a look
-/// (search distance 14, one thread). Usual scenes take 3 per triangle.
+/// PLOC's passes may look at `LOOKS_PER_TRIANGLE` nodes per triangle plus `LOOKS_BASE`, which is about 0.3 s at 137 ns
+/// a look (search distance 14, one thread). Usual scenes take 3 per triangle.
 const LOOKS_PER_TRIANGLE: u64 = 12;
 const LOOKS_BASE: u64 = 1 << 21;
 
@@ -54,8 +54,8 @@ fn is_endless(prims: &[Prim], bounds: &Aabb) -> bool {
     ploc_passes::looks(prims, bounds, unit(bounds), most) > most
 }
 
-/// Builds a BVH over all triangles that can be hit, on the threads of the current rayon pool; `None` where PLOC would take
-/// excessive time, as it does over many boxes that are equal, in a row or inside each other.
+/// Builds a BVH over all triangles that can be hit, on the threads of the current rayon pool; `None` where PLOC would
+/// take excessive time, as it does over many boxes that are equal, in a row or inside each other.
 ///
 /// # Errors
 /// [`crate::Error::Input`] if there are more triangles than a structure can hold.

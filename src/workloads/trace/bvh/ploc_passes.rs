@@ -1,10 +1,11 @@
 //! What PLOC's passes would cost, before they are run.
 //!
-//! A pass of PLOC merges two neighbours on the Morton curve where each is the other's cheapest partner, and looks at every node
-//! that is left. Usually a third of them merges, so that all passes together look at three or four times as many nodes as
-//! there are triangles. But where the costs of neighbours only rise along the curve, or are equal (a row of equal boxes,
-//! boxes in one place, boxes inside each other), each node prefers the same side, and a pass merges a single pair: `n`
-//! passes, `n^2 / 2` looks. No parameter of the builder changes that. Reinsertion, in contrast, costs no more on such scenes.
+//! A pass of PLOC merges two neighbours on the Morton curve where each is the other's cheapest partner, and looks at
+//! every node that is left. Usually a third of them merges, so that all passes together look at three or four times as
+//! many nodes as there are triangles. But where the costs of neighbours only rise along the curve, or are equal (a row
+//! of equal boxes, boxes in one place, boxes inside each other), each node prefers the same side, and a pass merges a
+//! single pair: `n` passes, `n^2 / 2` looks. No parameter of the builder changes that. Reinsertion, in contrast, costs
+//! no more on such scenes.
 
 use crate::math::Aabb;
 use crate::workloads::trace::common::prims::Prim;
@@ -17,8 +18,8 @@ const FEW: usize = 256;
 /// Most bits of a Morton code for each axis.
 const BITS: u32 = 21;
 
-/// How many nodes PLOC's passes look at, with a search distance of one, or a little more than `most` if it is more. `unit` is
-/// about 1 over the scene's extent, so that areas of huge scenes stay finite.
+/// How many nodes PLOC's passes look at, with a search distance of one, or a little more than `most` if it is more.
+/// `unit` is about 1 over the scene's extent, so that areas of huge scenes stay finite.
 pub(crate) fn looks(prims: &[Prim], bounds: &Aabb, unit: f32, most: u64) -> u64 {
     let mut nodes = along_the_curve(prims, bounds, unit);
     let cost = |a: &Node, b: &Node| {
@@ -35,7 +36,8 @@ pub(crate) fn looks(prims: &[Prim], bounds: &Aabb, unit: f32, most: u64) -> u64 
             // Between the next node and the one behind it; nothing is behind the last.
             let behind = if next + 2 < nodes.len() { cost(&nodes[next + 1], &nodes[next + 2]) } else { f32::INFINITY };
             let is_last = next + 1 == nodes.len();
-            // The first looks ahead unless its cost backwards is lower, the second backwards if its cost ahead is higher.
+            // The first looks ahead unless its cost backwards is lower, the second backwards if its cost ahead is
+            // higher.
             if !is_last && before >= here && here < behind {
                 let (a, b) = (nodes[next], nodes[next + 1]);
                 nodes[kept] = (a.0.min(b.0), a.1.max(b.1));

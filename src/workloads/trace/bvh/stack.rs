@@ -1,15 +1,44 @@
 //! BVH, one ray at a time with a private stack, nearer child first. Twin of `kernels/trace/bvh/stack.wgsl`.
 
-use crate::math::{Ray, T_MAX, ray_box};
-use crate::workloads::trace::bvh::{Bvh, BvhNode};
+use crate::math::{Ray, ray_box};
+use crate::workloads::trace::algorithm::{Algorithm, Traversal};
+use crate::workloads::trace::bvh::{BINNED, Bvh, BvhNode, KIND, PLOC};
 use crate::workloads::trace::count::Count;
-use crate::workloads::trace::traverse::{Best, TraverseIndependent, Triangles};
+use crate::workloads::trace::options::GROUP;
+use crate::workloads::trace::traverse::{Best, STACK_SIZE, TraverseIndependent, Triangles};
 
-/// Entries of the stack, with the one at the bottom; deeper trees are refused when they are prepared.
-pub const STACK_SIZE: usize = 96;
+/// A stack per ray in the same BVH as that of packets.
+pub static BVH_STACK: Algorithm = Algorithm {
+    name: "bvh-stack",
+    alias: "",
+    summary: "the same BVH, one ray per thread with a stack of its own",
+    paper: "Aila and Laine 2009",
+    builder: &BINNED,
+    traversal: &STACK,
+    options: &[GROUP],
+};
 
-/// What a node leads to, in one word (`kernels/trace/bvh/node.wgsl`): the left child of an inner node, which the right one
-/// follows, or with the top bit set four bits of count and 27 bits of first triangle reference.
+/// A stack per ray in a BVH of a state-of-the-art builder.
+pub static PLOC_STACK: Algorithm = Algorithm {
+    name: "ploc-stack",
+    alias: "",
+    summary: "BVH built by obvhs (PLOC with reinsertion; as bvh where that takes too long), a stack per ray",
+    paper: "Meister and Bittner 2018",
+    builder: &PLOC,
+    traversal: &STACK,
+    options: &[GROUP],
+};
+
+/// Depth first, nearer child first.
+pub static STACK: Traversal = Traversal {
+    kernel: "trace/bvh/stack.wgsl",
+    structure: &KIND,
+    twin: Some(|input| Ok(input.with(BvhStack::new(input.triangles(), input.structure()?)))),
+    ..Traversal::INDEPENDENT
+};
+
+/// What a node leads to, in one word (`kernels/trace/bvh/node.wgsl`): the left child of an inner node, which the right
+/// one follows, or with the top bit set four bits of count and 27 bits of first triangle reference.
 pub const LEAF: u32 = 0x8000_0000;
 
 /// A leaf without triangle references: the bottom of every stack, and an empty tree's root.
@@ -23,10 +52,18 @@ pub fn leaf_triangle_refs(reference: u32) -> (u32, u32) {
     (reference & 0x07ff_ffff, reference >> 27 & 15)
 }
 
-/// True if a ray that has found something at `t` still wants a box with this interval.
+/// True if a box with this interval contains a point of the ray from its start to `t`.
 #[inline(always)]
-pub fn wanted((near, far): (f32, f32), t: f32) -> bool {
+pub fn overlaps((near, far): (f32, f32), t: f32) -> bool {
     near.max(0.0) <= far.min(t)
+}
+
+/// A ray's stack; the lowest entry is BOTTOM.
+struct Stack {
+    node: [u32; STACK_SIZE],
+    /// Distance at which the node's box begins.
+    t: [f32; STACK_SIZE],
+    depth: usize,
 }
 
 /// See the module.
@@ -42,80 +79,67 @@ impl<'a> BvhStack<'a> {
         BvhStack { triangles, pairs: bvh.nodes.as_chunks().0 }
     }
 
-    /// The loop of both functions: `leaf` is called with first triangle reference and count, and returns the distance beyond which
-    /// nothing is of interest any more; a negative one ends the traversal.
+    /// The node on top of the stack, if its box begins before `t`; or the next one of which that is true, or EMPTY.
     #[inline(always)]
-    fn walk<C: Count>(&self, ray: &Ray, mut t: f32, count: &mut C, mut leaf: impl FnMut(u32, u32, &mut C) -> f32) {
-        let mut stack_node = [BOTTOM; STACK_SIZE];
-        let mut stack_t = [-1.0f32; STACK_SIZE];
-        let mut depth = 1; // entries with BOTTOM
-        // What the next node whose box begins before `t` leads to, or EMPTY
-        let pop = |t: f32, depth: &mut usize, nodes: &[u32; STACK_SIZE], ts: &[f32; STACK_SIZE], count: &mut C| loop {
-            *depth -= 1;
-            let node = nodes[*depth];
+    fn pop<C: Count>(&self, t: f32, stack: &mut Stack, count: &mut C) -> u32 {
+        loop {
+            stack.depth -= 1;
+            let node = stack.node[stack.depth];
             if node == BOTTOM {
                 return EMPTY;
             }
             count.pop();
-            if ts[*depth] <= t {
+            if stack.t[stack.depth] <= t {
                 return self.pairs[node as usize / 2][node as usize % 2].reference();
             }
-        };
-        let root = &self.pairs[0][0];
-        let (min, max) = root.corners();
-        let mut reference = if wanted(ray_box(ray, min, max), t) { root.reference() } else { EMPTY };
-        loop {
-            // Go down, nearer child first, until the node is a leaf or nothing is left
-            while reference & LEAF == 0 {
-                count.inner();
-                let [left, right] = &self.pairs[reference as usize / 2];
-                let (min, max) = left.corners();
-                let l = ray_box(ray, min, max);
-                let (min, max) = right.corners();
-                let r = ray_box(ray, min, max);
-                reference = match (wanted(l, t), wanted(r, t)) {
-                    (true, true) => {
-                        let right_first = r.0 < l.0;
-                        stack_node[depth] = reference + !right_first as u32;
-                        stack_t[depth] = l.0.max(r.0);
-                        depth += 1;
-                        if right_first { right.reference() } else { left.reference() }
-                    }
-                    (true, false) => left.reference(),
-                    (false, true) => right.reference(),
-                    (false, false) => pop(t, &mut depth, &stack_node, &stack_t, count),
-                }
-            }
-            if reference == EMPTY {
-                return;
-            }
-            count.leaf();
-            let (first, triangle_refs) = leaf_triangle_refs(reference);
-            t = leaf(first, triangle_refs, count);
-            if t < 0.0 {
-                return;
-            }
-            reference = pop(t, &mut depth, &stack_node, &stack_t, count);
         }
+    }
+
+    /// Goes down, nearer child first, to a leaf, or to EMPTY if no box that begins before `t` is left.
+    #[inline(always)]
+    fn walk_to_leaf<C: Count>(&self, ray: &Ray, t: f32, mut reference: u32, stack: &mut Stack, count: &mut C) -> u32 {
+        while reference & LEAF == 0 {
+            count.inner();
+            let [left, right] = &self.pairs[reference as usize / 2];
+            let (min, max) = left.corners();
+            let l = ray_box(ray, min, max);
+            let (min, max) = right.corners();
+            let r = ray_box(ray, min, max);
+            reference = match (overlaps(l, t), overlaps(r, t)) {
+                (true, true) => {
+                    let right_first = r.0 < l.0;
+                    stack.node[stack.depth] = reference + !right_first as u32;
+                    stack.t[stack.depth] = l.0.max(r.0);
+                    stack.depth += 1;
+                    if right_first { right.reference() } else { left.reference() }
+                }
+                (true, false) => left.reference(),
+                (false, true) => right.reference(),
+                (false, false) => self.pop(t, stack, count),
+            }
+        }
+        reference
     }
 }
 
 impl TraverseIndependent for BvhStack<'_> {
-    fn nearest_hit<C: Count>(&self, ray: &Ray, count: &mut C) -> u32 {
-        let mut best = Best::NONE;
-        self.walk(ray, T_MAX, count, |first, triangle_refs, count| {
-            self.triangles.test_triangles(ray, first, triangle_refs, &mut best, count);
-            best.t
-        });
-        best.triangle_ref
-    }
-
-    fn any_hit<C: Count>(&self, ray: &Ray, limit: f32, count: &mut C) -> bool {
-        let mut blocked = false;
-        self.walk(ray, limit, count, |first, triangle_refs, count| {
-            blocked = self.triangles.any_triangle_occludes(ray, first, triangle_refs, limit, count);
-            if blocked { -1.0 } else { limit }
-        });
-        blocked
+    fn traverse<const ANY: bool, C: Count>(&self, ray: &Ray, limit: f32, count: &mut C) -> u32 {
+        let mut best = Best::before(limit);
+        let mut stack = Stack { node: [BOTTOM; STACK_SIZE], t: [-1.0; STACK_SIZE], depth: 1 };
+        let root = &self.pairs[0][0];
+        let (min, max) = root.corners();
+        let mut reference = if overlaps(ray_box(ray, min, max), limit) { root.reference() } else { EMPTY };
+        loop {
+            reference = self.walk_to_leaf(ray, best.t, reference, &mut stack, count);
+            if reference == EMPTY {
+                return best.triangle_ref;
+            }
+            count.leaf();
+            let (first, triangle_refs) = leaf_triangle_refs(reference);
+            if self.triangles.test::<ANY, C>(ray, first, triangle_refs, &mut best, count) {
+                return best.triangle_ref;
+            }
+            reference = self.pop(best.t, &mut stack, count);
+        }
     }
 }

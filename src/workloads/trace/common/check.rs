@@ -5,12 +5,11 @@
 
 use crate::math::Aabb;
 use crate::scene::Scene;
+use crate::workloads::trace::TriangleRef;
 use crate::workloads::trace::common::prims;
-use crate::workloads::trace::{Structure, TriangleRef};
-use crate::workloads::trace::{bvh, grid, kdtree};
 
 /// What a check finds: the first broken invariant, in words.
-pub(crate) type Verdict = Result<(), String>;
+pub type Verdict = Result<(), String>;
 
 /// Returns the message if the condition does not hold.
 macro_rules! ensure {
@@ -23,37 +22,17 @@ macro_rules! ensure {
 }
 pub(crate) use ensure;
 
-impl Structure {
-    /// Checks every invariant of the structure against the scene that it was built from.
-    ///
-    /// # Errors
-    /// The first broken invariant, in words.
-    pub fn validate(&self, scene: &Scene) -> Result<(), String> {
-        let expected = Expected::new(scene);
-        ensure!(
-            same(self.bounds(), expected.bounds),
-            "bounds are {:?}, the triangles' are {:?}",
-            self.bounds(),
-            expected.bounds
-        );
-        for (i, triangle_ref) in self.triangle_refs().iter().enumerate() {
-            expected.check_triangle_ref(i, triangle_ref)?;
-        }
-        match self {
-            Structure::Brute(s) => {
-                let triangles: Vec<u32> = s.triangle_refs.iter().map(|r| r.triangle).collect();
-                ensure!(triangles == expected.hittable, "the triangle references are not all triangles in scene order");
-                Ok(())
-            }
-            Structure::Grid(s) => grid::check::check(s, &expected),
-            Structure::KdTree(s) => kdtree::check::check(s, &expected),
-            Structure::Bvh(s) => bvh::check::check(s, &expected),
-        }
+/// Checks the bounds and the triangle references that every structure has.
+pub(crate) fn common(bounds: Aabb, triangle_refs: &[TriangleRef], expected: &Expected) -> Verdict {
+    ensure!(same(bounds, expected.bounds), "bounds are {bounds:?}, the triangles' are {:?}", expected.bounds);
+    for (i, triangle_ref) in triangle_refs.iter().enumerate() {
+        expected.check_triangle_ref(i, triangle_ref)?;
     }
+    Ok(())
 }
 
 /// What the scene demands.
-pub(crate) struct Expected<'a> {
+pub struct Expected<'a> {
     scene: &'a Scene,
     /// Triangles that must be found, ascending.
     pub(crate) hittable: Vec<u32>,
@@ -63,7 +42,7 @@ pub(crate) struct Expected<'a> {
 }
 
 impl<'a> Expected<'a> {
-    fn new(scene: &'a Scene) -> Expected<'a> {
+    pub(crate) fn new(scene: &'a Scene) -> Expected<'a> {
         let count = scene.triangles.len() as u32;
         let boxes: Vec<Aabb> =
             (0..count).map(|i| prims::prim(scene, i).map_or(Aabb::EMPTY, |prim| prim.aabb())).collect();

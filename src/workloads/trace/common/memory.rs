@@ -1,4 +1,4 @@
-//! The thesis's memory model (SPEC section 7): what it would have counted for a structure, geometry included.
+//! The memory model of the thesis of 2009: what it would have counted for a structure, geometry included.
 //!
 //! It is kept apart from what is really allocated: its BVH has 40 bytes a node where a node has 32, and leaves the
 //! triangle references out. Held against all 27 published sizes by `tests/it/thesis/published.rs`.

@@ -1,4 +1,5 @@
-//! What builders sort: the box of every triangle that can be hit, 32 bytes each, and the triangle references they end up as.
+//! What builders sort: the box of every triangle that can be hit, 32 bytes each, and the triangle references they end
+//! up as.
 
 use crate::error::{Error, Result};
 use crate::math::Aabb;
@@ -16,7 +17,8 @@ pub const MAX_TRIANGLES: usize = 1 << 29;
 /// number of threads. Small, so that no thread waits long for the one that began last.
 pub const CHUNK: usize = 2048;
 
-/// Nodes of more triangles than this are worked on by several threads at once; others have enough to do beside them.
+/// Nodes of more triangles than this are worked on by several threads at once; smaller nodes are built in parallel with
+/// each other instead.
 pub(crate) const SHARED: usize = 32_768;
 
 /// Added to an index that rides along as a float: without it the lane would be denormal, and a multiplication that
@@ -37,7 +39,7 @@ pub struct Prim {
 }
 
 impl Prim {
-    /// Stands where no triangle has been put yet.
+    /// A placeholder where no triangle has been put yet.
     pub const NONE: Prim = Prim { min: Vec4::ONE, max: Vec4::ONE };
 
     /// Index of the triangle in the scene.
@@ -94,7 +96,7 @@ pub(crate) fn gather<T: Copy + Send + Sync>(
 ) -> Result<(Vec<T>, Aabb)> {
     let count = scene.triangles.len();
     if count >= MAX_TRIANGLES {
-        return Err(Error::argument(
+        return Err(Error::too_large(
             &scene.name,
             format!("{count} triangles are more than a structure can hold ({})", MAX_TRIANGLES - 1),
             "use a smaller scene",

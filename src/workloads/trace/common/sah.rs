@@ -16,7 +16,7 @@ pub struct CostModel {
 }
 
 impl Default for CostModel {
-    /// Both the same: what explains the published kd-trees (SPEC section 3).
+    /// Both the same: the published kd-trees are explained by it (METHODOLOGY.md).
     fn default() -> Self {
         CostModel { traversal: 1.0, intersection: 1.0 }
     }

@@ -1,15 +1,30 @@
-//! The GPU side: devices, kernel assembly, uploads, timers. Only here stands a wgpu type.
+//! Ray tracing on a Vulkan device: kernel variants, uploads, frames.
 
-mod adapters;
-mod device;
 pub mod kernels;
+mod path;
 mod prepared;
 mod shared;
-mod timing;
-mod tokens;
 mod upload;
-mod words;
 
-pub use adapters::{Selector, adapters, choose};
-pub use device::{GpuBackend, GpuOptions};
-pub use shared::{FrameUniform, StructureUniform, TraceRay};
+pub use shared::{FrameUniform, TraceRay};
+
+use crate::device::{DeviceInfo, VulkanDevice};
+use crate::error::Result;
+use crate::scene::Scene;
+use crate::workloads::trace::backend::{Backend, Prepared};
+use crate::workloads::trace::{Method, Structure};
+
+impl Backend for VulkanDevice {
+    fn info(&self) -> &DeviceInfo {
+        VulkanDevice::info(self)
+    }
+
+    fn prepare<'a>(
+        &'a self,
+        scene: &'a Scene,
+        structure: &'a dyn Structure,
+        method: Method,
+    ) -> Result<Box<dyn Prepared + 'a>> {
+        Ok(Box::new(prepared::GpuPrepared::new(self, scene, structure, method)?))
+    }
+}

@@ -1,27 +1,30 @@
-//! A scene and a structure on a device: rendering, counting, tracing; timing is in [`crate::workloads::trace::gpu::timing`].
+//! A scene and a structure on a device with one traversal: images, counting, given rays. Timing is in [`super::path`].
 
+use super::kernels::{Entry, Kernel, stack_size};
+use super::path::LastFrame;
+use super::shared::{FrameUniform, TraceRay};
+use super::upload::Uploaded;
 use crate::camera::View;
+use crate::device::vulkan::{Bindings, Buffer, Dispatch, Groups, Pipeline, PipelineDescription, Resource};
+use crate::device::{Frame, Pass, Stage, VulkanDevice};
 use crate::error::{Error, Result};
 use crate::math::{Hit, T_MAX};
 use crate::scene::{Light, Scene};
 use crate::workloads::trace::backend::*;
-use crate::workloads::trace::gpu::device::{Compiled, GpuBackend};
-use crate::workloads::trace::gpu::kernels::{Entry, Kernel, stack_size};
-use crate::workloads::trace::gpu::shared::{FrameUniform, TraceRay};
-use crate::workloads::trace::gpu::timing::Written;
-use crate::workloads::trace::gpu::upload::Uploaded;
-use crate::workloads::trace::{Method, Structure, Traversal};
-use bytemuck::{AnyBitPattern, NoUninit, Zeroable};
+use crate::workloads::trace::cpu::cannot_walk;
+use crate::workloads::trace::{Method, Structure};
+use bytemuck::Zeroable;
 use std::collections::HashMap;
-
-/// Bands of frames that are rendered or counted, not timed: about this many pixels.
-const BAND_PIXELS: u32 = 262_144;
+use std::sync::Arc;
 
 /// Rays per dispatch of [`Prepared::trace`].
 const TRACE_RAYS: usize = 1 << 20;
 
+/// The one stage of a frame: rays are generated, traced and shaded by one kernel.
+const RENDER: Stage = Stage("render");
+
 pub(super) struct GpuPrepared<'a> {
-    pub(super) backend: &'a GpuBackend,
+    pub(super) device: &'a VulkanDevice,
     scene: &'a Scene,
     uploaded: Uploaded,
     pub(super) method: Method,
@@ -29,58 +32,77 @@ pub(super) struct GpuPrepared<'a> {
     lengths: Lengths,
     /// Bands per frame that keep a dispatch below the watchdog, by configuration and size.
     pub(super) bands: HashMap<(Config, Size), u32>,
-    /// Of the path that was timed last.
-    pub(super) written: Option<Written>,
+    /// The last frame of the path that was timed last.
+    pub(super) last_frame: Option<LastFrame>,
 }
 
 /// Uniforms and lights of many frames, uploaded before any of them runs.
-pub(super) struct Frames {
-    uniforms: wgpu::Buffer,
-    lights: wgpu::Buffer,
+pub(super) struct FrameInputs {
+    uniforms: Buffer,
+    lights: Buffer,
+    /// Bytes between the uniforms of two parts.
     stride: u32,
-    /// Work-groups of each uniform's part, columns and rows: what is dispatched.
-    pub(super) groups: Vec<(u32, u32)>,
+    /// Work-groups of each part, columns and rows.
+    groups: Vec<(u32, u32)>,
+    parts_per_frame: usize,
 }
 
-/// A part of an image, and the pixel of the output where it would begin if it had all columns.
+/// A part of an image, and the index of the output pixel where it would begin if it had all columns.
 pub(super) type Part = (Tile, u32);
 
 impl<'a> GpuPrepared<'a> {
     pub fn new(
-        backend: &'a GpuBackend,
+        device: &'a VulkanDevice,
         scene: &'a Scene,
-        structure: &'a Structure,
+        structure: &'a dyn Structure,
         method: Method,
     ) -> Result<GpuPrepared<'a>> {
-        let depth = match (structure, method.traversal) {
-            (Structure::Brute(_), Traversal::Brute)
-            | (Structure::Grid(_), Traversal::Grid | Traversal::GridCoop | Traversal::GridPacket)
-            | (Structure::KdTree(_), Traversal::KdTree(_)) => 0,
-            (Structure::Bvh(bvh), Traversal::Bvh(_) | Traversal::BvhStack) => bvh.depth,
-            _ => return Err(Error::Device(format!("{:?} cannot walk this structure", method.traversal))),
-        };
+        let traversal = method.traversal;
+        if structure.kind() != traversal.structure {
+            return Err(cannot_walk(traversal, structure));
+        }
+        let missing = traversal.needs.missing_in(device.features());
+        if !missing.is_empty() {
+            let missing: Vec<String> = missing.iter().map(|feature| format!("{feature:?}")).collect();
+            return Err(Error::unsupported(format!(
+                "{} needs what this device lacks: {}",
+                traversal.kernel,
+                missing.join(", ")
+            )));
+        }
         Ok(GpuPrepared {
-            backend,
+            device,
             scene,
-            uploaded: backend.upload(scene, structure, method)?,
+            uploaded: Uploaded::new(device, scene, structure, method)?,
             method,
-            stack_size: stack_size(depth),
+            stack_size: stack_size(structure.stack_depth()),
             lengths: Lengths::new(scene.bounds()),
             bands: HashMap::new(),
-            written: None,
+            last_frame: None,
         })
     }
 
-    pub(super) fn kernel_of(&self, entry: Entry) -> Kernel {
-        let software_threads = self.backend.software_threads();
+    fn kernel_of(&self, entry: Entry) -> Kernel {
+        let software_threads = self.device.info().software_threads();
         let textures = self.uploaded.textures;
         Kernel { entry, method: self.method, stack_size: self.stack_size, software_threads, textures }
     }
 
+    pub(super) fn compiled(&self, entry: Entry) -> Result<Arc<Pipeline>> {
+        let kernel = self.kernel_of(entry);
+        self.device.pipeline(&PipelineDescription {
+            label: &kernel.label(),
+            text: &kernel.assemble().map_err(Error::Device)?.text,
+            layout: &kernel.layout(),
+            checked: self.method.checked,
+            // Packets share tallies that must begin as zero; short stacks need no clearing
+            zero_workgroup_memory: self.method.traversal.cooperative,
+        })
+    }
+
     /// Uploads the uniforms of all parts of all views.
-    pub(super) fn frames(&self, views: &[View], size: Size, parts: &[Part]) -> Result<Frames> {
-        let stride = (size_of::<FrameUniform>() as u32)
-            .next_multiple_of(self.backend.limits.min_uniform_buffer_offset_alignment);
+    pub(super) fn frame_inputs(&self, views: &[View], size: Size, parts: &[Part]) -> Result<FrameInputs> {
+        let stride = self.device.uniform_stride(size_of::<FrameUniform>());
         let mut uniforms = Vec::with_capacity(views.len() * parts.len() * stride as usize);
         let mut lights: Vec<Light> = Vec::new();
         let mut groups = Vec::with_capacity(views.len() * parts.len());
@@ -115,140 +137,95 @@ impl<'a> GpuPrepared<'a> {
             }
             lights.extend_from_slice(&view.lights);
         }
-        let most = self.backend.limits.max_compute_workgroups_per_dimension;
+        let most = self.device.max_groups();
         if let Some((x, y)) = groups.iter().find(|(x, y)| *x.max(y) > most) {
-            let problem = format!("an image of {x} x {y} work-groups is beyond this device's {most} per dimension");
-            return Err(Error::Device(problem));
+            let problem = format!("{x} x {y} work-groups are more than this device's {most} per dimension");
+            return Err(Error::too_large("the image", problem, "use a smaller one"));
         }
-        let uniforms = self.backend.filled("the frames", &uniforms, wgpu::BufferUsages::UNIFORM)?;
-        Ok(Frames { uniforms, lights: self.backend.storage("the lights", &lights)?, stride, groups })
+        Ok(FrameInputs {
+            uniforms: self.device.uniform("the frames", &uniforms)?,
+            lights: self.device.storage("the lights", &lights)?,
+            stride,
+            groups,
+            parts_per_frame: parts.len(),
+        })
     }
 
-    pub(super) fn render_bindings(
-        &self,
-        compiled: &Compiled,
-        frames: &Frames,
-        output: &wgpu::Buffer,
-    ) -> wgpu::BindGroup {
-        let uniform = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-            buffer: &frames.uniforms,
-            offset: 0,
-            size: wgpu::BufferSize::new(size_of::<FrameUniform>() as u64),
-        });
+    pub(super) fn render_bindings(&self, pipeline: &Pipeline, inputs: &FrameInputs, output: &Buffer) -> Bindings {
+        let uniform = Resource::Window(&inputs.uniforms, size_of::<FrameUniform>() as u64);
         let others =
-            [(3, &self.uploaded.materials), (4, &self.uploaded.triangle_materials), (5, &frames.lights), (8, output)];
-        self.bind(compiled, uniform, &others)
+            [(3, &self.uploaded.materials), (4, &self.uploaded.triangle_materials), (5, &inputs.lights), (8, output)];
+        self.bind(pipeline, uniform, &others)
     }
 
-    /// Binds scene and structure, `first` as number 0, and whatever else a kernel has.
-    fn bind(
-        &self,
-        compiled: &Compiled,
-        first: wgpu::BindingResource,
-        others: &[(u32, &wgpu::Buffer)],
-    ) -> wgpu::BindGroup {
+    /// Binds scene and structure, `first` as number 0, and the kernel's other buffers.
+    fn bind(&self, pipeline: &Pipeline, first: Resource, others: &[(u32, &Buffer)]) -> Bindings {
         let scene = &self.uploaded;
-        let inputs = [(1, &scene.vertices), (2, &scene.triangle_refs), (6, &scene.nodes)];
-        let mut entries: Vec<_> = [(0, first), (7, scene.structure.as_entire_binding())]
-            .into_iter()
-            .chain(inputs.map(|(binding, words)| (binding, words.binding())))
-            .chain(others.iter().map(|(binding, buffer)| (*binding, buffer.as_entire_binding())))
-            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-            .collect();
-        entries.sort_by_key(|entry| entry.binding);
-        let layout = &compiled.bindings;
-        self.backend.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+        let mut resources = vec![
+            (0, first),
+            (1, Resource::from(&scene.vertices)),
+            (2, Resource::from(&scene.triangle_refs)),
+            (6, Resource::from(&scene.nodes)),
+            (7, Resource::from(&scene.structure)),
+        ];
+        resources.extend(others.iter().map(|&(number, buffer)| (number, Resource::from(buffer))));
+        self.device.bind(pipeline, &resources)
     }
 
-    /// Submits one part.
-    pub(super) fn submit(
-        &self,
-        compiled: &Compiled,
-        bindings: &wgpu::BindGroup,
-        frames: &Frames,
-        index: usize,
-        timer: Option<wgpu::ComputePassTimestampWrites>,
-    ) -> wgpu::SubmissionIndex {
-        let mut encoder = self.backend.device.create_command_encoder(&Default::default());
-        {
-            let mut pass =
-                encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes: timer });
-            pass.set_pipeline(&compiled.pipeline);
-            pass.set_bind_group(0, bindings, &[index as u32 * frames.stride]);
-            let (x, y) = frames.groups[index];
-            pass.dispatch_workgroups(x, y, 1);
-        }
-        self.backend.queue.submit([encoder.finish()])
-    }
-
-    /// Copies a buffer's first `count` elements back.
-    pub(super) fn read<T: AnyBitPattern + NoUninit>(&self, buffer: &wgpu::Buffer, count: usize) -> Result<Vec<T>> {
-        let size = (count * size_of::<T>()) as u64;
-        let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
-        let staging = self.backend.buffer("the read-back", size, usage)?;
-        let mut encoder = self.backend.device.create_command_encoder(&Default::default());
-        encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, size);
-        let submission = self.backend.queue.submit([encoder.finish()]);
-        staging.map_async(wgpu::MapMode::Read, 0..size, |_| ());
-        self.backend.wait(submission)?;
-        let view =
-            staging.get_mapped_range(0..size).map_err(|e| Error::DeviceLost(format!("cannot read back: {e}")))?;
-        Ok(bytemuck::pod_collect_to_vec(&view))
-    }
-
-    /// A buffer for output, filled with [`POISON`]: what a kernel does not write is then seen.
-    pub(super) fn poisoned(&self, what: &str, size: u64) -> Result<wgpu::Buffer> {
-        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
-        let buffer = self.backend.buffer(what, size, usage)?;
-        let poison = vec![POISON; (size as usize).div_ceil(4)];
-        self.backend.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&poison));
-        Ok(buffer)
+    /// A buffer for the timed kernel's image.
+    pub(super) fn image_buffer(&self, size: Size) -> Result<Buffer> {
+        self.device.poisoned("the image", (size.pixels() * size_of::<Pixel>()) as u64)
     }
 
     /// Splits an image into about `across` x `down` parts of whole work-groups, each with its own place in the output.
     pub(super) fn parts(&self, size: Size, across: u32, down: u32) -> Vec<Part> {
         tiles(size, across, down, self.method.group).into_iter().map(|tile| (tile, tile.row * size.width)).collect()
     }
-}
 
-impl GpuPrepared<'_> {
     /// Traces as many rays as a dispatch takes.
-    fn trace_chunk(&self, compiled: &Compiled, rays: &[GivenRay]) -> Result<Vec<Hit>> {
-        let given: Vec<TraceRay> = rays
+    fn trace_chunk(&self, pipeline: &Pipeline, rays: &[GivenRay]) -> Result<Vec<Hit>> {
+        let input: Vec<TraceRay> = rays
             .iter()
             .map(|ray| TraceRay { origin: ray.origin, direction: ray.direction, ..TraceRay::zeroed() })
             .collect();
-        let given = self.backend.storage("the given rays", &given)?;
-        let job = [rays.len() as u32, 0, 0, 0];
-        let job = self.backend.filled("the job", bytemuck::cast_slice(&job), wgpu::BufferUsages::UNIFORM)?;
-        let output = self.poisoned("the hits", (rays.len() * 8) as u64)?;
-        let bindings = self.bind(compiled, job.as_entire_binding(), &[(3, &given), (8, &output)]);
-        let mut encoder = self.backend.device.create_command_encoder(&Default::default());
-        {
-            let mut pass = encoder.begin_compute_pass(&Default::default());
-            pass.set_pipeline(&compiled.pipeline);
-            pass.set_bind_group(0, &bindings, &[]);
-            pass.dispatch_workgroups((rays.len() as u32).div_ceil(self.method.group.size()), 1, 1);
-        }
-        self.backend.queue.submit([encoder.finish()]);
-        let found: Vec<[u32; 2]> = self.read(&output, rays.len())?;
+        let input = self.device.storage("the given rays", &input)?;
+        let job = self.device.uniform("the job", &[rays.len() as u32, 0, 0, 0])?;
+        let output = self.device.poisoned("the hits", (rays.len() * 8) as u64)?;
+        let bindings = self.bind(pipeline, Resource::from(&job), &[(3, &input), (8, &output)]);
+        let groups = Groups::Fixed((rays.len() as u32).div_ceil(self.method.group.size()), 1, 1);
+        let work = Dispatch { pipeline, bindings: &bindings, offset: None, groups };
+        self.device.run(&Frame::new(vec![Pass { stage: Stage("trace"), work }]))?;
+        let found: Vec<[u32; 2]> = self.device.read(&output, rays.len())?;
         Ok(found.iter().map(|&[t, triangle]| Hit { t: f32::from_bits(t), triangle }).collect())
+    }
+}
+
+impl FrameInputs {
+    /// The frames that were uploaded: a pass for each of their parts.
+    pub fn frames<'f>(&self, pipeline: &'f Pipeline, bindings: &'f Bindings) -> Vec<Frame<Dispatch<'f>>> {
+        let passes: Vec<_> = (0u32..)
+            .zip(&self.groups)
+            .map(|(index, &(x, y))| {
+                let (offset, groups) = (Some(index * self.stride), Groups::Fixed(x, y, 1));
+                Pass { stage: RENDER, work: Dispatch { pipeline, bindings, offset, groups } }
+            })
+            .collect();
+        passes.chunks(self.parts_per_frame).map(|passes| Frame::new(passes.to_vec())).collect()
     }
 }
 
 impl Prepared for GpuPrepared<'_> {
     fn image(&mut self, config: Config, view: &View, size: Size) -> Result<Vec<Pixel>> {
-        let compiled = self.backend.compiled(self.kernel_of(Entry::Render { config, counting: false }))?;
-        let output = self.poisoned("the image", (size.pixels() * size_of::<Pixel>()) as u64)?;
+        let pipeline = self.compiled(Entry::Render { config, counting: false })?;
+        let output = self.image_buffer(size)?;
         let tiles = self.method.tiles;
         let bands = self.parts(size, tiles, tiles.max((size.pixels() as u32).div_ceil(BAND_PIXELS)));
-        let frames = self.frames(std::slice::from_ref(view), size, &bands)?;
-        let bindings = self.render_bindings(&compiled, &frames, &output);
-        for index in 0..bands.len() {
-            let submission = self.submit(&compiled, &bindings, &frames, index, None);
-            self.backend.wait(submission)?;
+        let inputs = self.frame_inputs(std::slice::from_ref(view), size, &bands)?;
+        let bindings = self.render_bindings(&pipeline, &inputs, &output);
+        for frame in inputs.frames(&pipeline, &bindings) {
+            self.device.run(&frame)?;
         }
-        self.read(&output, size.pixels())
+        self.device.read(&output, size.pixels())
     }
 
     fn counted(
@@ -258,25 +235,23 @@ impl Prepared for GpuPrepared<'_> {
         size: Size,
         band: &mut dyn FnMut(u32, &[CountedPixel]),
     ) -> Result<()> {
-        let compiled = self.backend.compiled(self.kernel_of(Entry::Render { config, counting: true }))?;
-        let mut bands = self.parts(size, 1, (size.pixels() as u32).div_ceil(BAND_PIXELS));
-        // Each begins at the output's start
-        bands.iter_mut().for_each(|(_, first_pixel)| *first_pixel = 0);
+        let pipeline = self.compiled(Entry::Render { config, counting: true })?;
+        let bands = self.parts(size, 1, (size.pixels() as u32).div_ceil(BAND_PIXELS));
         let largest = bands.iter().map(|(tile, _)| tile.rows as usize * size.width as usize).max().unwrap_or(0);
         let bytes = (largest * size_of::<CountedPixel>()) as u64;
-        let output = self.poisoned("the counters", bytes)?;
-        // For the bands after the first, or they would find the one before
-        let poison = if bands.len() > 1 { Some(self.poisoned("the poison", bytes)?) } else { None };
-        let frames = self.frames(std::slice::from_ref(view), size, &bands)?;
-        let bindings = self.render_bindings(&compiled, &frames, &output);
-        for (index, &(Tile { row, rows, .. }, _)) in bands.iter().enumerate() {
-            if let Some(poison) = poison.as_ref().filter(|_| index > 0) {
-                let mut encoder = self.backend.device.create_command_encoder(&Default::default());
-                encoder.copy_buffer_to_buffer(poison, 0, &output, 0, bytes);
-                self.backend.queue.submit([encoder.finish()]);
+        let output = self.device.poisoned("the counters", bytes)?;
+        // Every band begins at the output's start and must not find the one before
+        let poison = if bands.len() > 1 { Some(self.device.poisoned("the poison", bytes)?) } else { None };
+        let parts: Vec<Part> = bands.iter().map(|&(tile, _)| (tile, 0)).collect();
+        let inputs = self.frame_inputs(std::slice::from_ref(view), size, &parts)?;
+        let bindings = self.render_bindings(&pipeline, &inputs, &output);
+        let passes = inputs.frames(&pipeline, &bindings).into_iter().flat_map(|frame| frame.passes);
+        for (pass, &(Tile { row, rows, .. }, _)) in passes.zip(&bands) {
+            if let Some(poison) = poison.as_ref().filter(|_| row > 0) {
+                self.device.copy(poison, &output);
             }
-            self.submit(&compiled, &bindings, &frames, index, None);
-            let pixels: Vec<CountedPixel> = self.read(&output, (rows * size.width) as usize)?;
+            self.device.run(&Frame::new(vec![pass]))?;
+            let pixels: Vec<CountedPixel> = self.device.read(&output, (rows * size.width) as usize)?;
             band(row, &pixels);
         }
         Ok(())
@@ -293,14 +268,17 @@ impl Prepared for GpuPrepared<'_> {
     }
 
     fn timed(&mut self) -> Result<Timed> {
-        self.last_timed()
+        match &self.last_frame {
+            Some(frame) => frame.read(self.device),
+            None => Ok(Timed::default()),
+        }
     }
 
     fn trace(&mut self, rays: &[GivenRay], any_hit: bool) -> Result<Vec<Hit>> {
-        let compiled = self.backend.compiled(self.kernel_of(Entry::Trace { any_hit }))?;
+        let pipeline = self.compiled(Entry::Trace { any_hit })?;
         let mut hits = Vec::with_capacity(rays.len());
         for rays in rays.chunks(TRACE_RAYS) {
-            let found = trace_units(rays, hits.len(), |rays| self.trace_chunk(&compiled, rays))?;
+            let found = trace_units(rays, hits.len(), |rays| self.trace_chunk(&pipeline, rays))?;
             hits.extend(found);
         }
         debug_assert!(hits.iter().all(|hit| hit.t <= T_MAX));
@@ -311,7 +289,7 @@ impl Prepared for GpuPrepared<'_> {
         let kernel = self.kernel_of(Entry::Render { config, counting: false });
         let hash = kernel.assemble().map_err(Error::Device)?.hash();
         let fetch = if kernel.textures { "textures" } else { "buffers" };
-        let checked = self.backend.options.checked || self.method.checked;
+        let checked = self.device.options().checked || self.method.checked;
         Ok(Some(KernelInfo { hash, fetch: fetch.to_owned(), checked }))
     }
 

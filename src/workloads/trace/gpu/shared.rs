@@ -1,7 +1,6 @@
-//! Structs that kernels and host share, beside those of [`crate::math`], [`crate::scene`], [`crate::workloads::trace`] and
-//! [`crate::workloads::trace::backend`]. A test compares size and offsets of each with naga's layout of its WGSL twin.
+//! Structs that kernels and host share and that have no twin on the CPU. A test compares size and offsets of each with
+//! naga's layout of its WGSL twin.
 
-use crate::workloads::trace::grid::octants::Octant;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
@@ -27,20 +26,6 @@ pub struct FrameUniform {
     pub height: u32,
     pub shadow_reach: f32,
     pub pad: [u32; 2],
-}
-
-/// `Structure` of `kernels/trace/scene.wgsl`.
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-#[repr(C)]
-#[allow(missing_docs)]
-pub struct StructureUniform {
-    pub bounds_min: Vec3,
-    pub cell_size: f32,
-    pub bounds_max: Vec3,
-    pub triangle_refs: u32,
-    pub resolution: [u32; 3],
-    pub pad: u32,
-    pub octants: [Octant; 8],
 }
 
 /// `GivenRay` of `kernels/trace/given.wgsl`.

@@ -1,4 +1,4 @@
-//! Grid builder: every triangle into every cell that its box overlaps, in two passes, O(n) (SPEC section 2).
+//! Grid builder: every triangle into every cell that its box overlaps, in two passes, O(n).
 
 use crate::error::{Error, Result};
 use crate::math::Aabb;
@@ -10,8 +10,8 @@ use glam::Vec3;
 /// What can be set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
-    /// Number of cells per axis set by hand (SPEC: robots 128 on x, kitchen 128 on y). The first axis that is set
-    /// decides the edge length; the others follow from it unless they are set too.
+    /// Number of cells per axis set by hand (the thesis set robots to 128 on x, kitchen to 128 on y). The first axis
+    /// that is set decides the edge length; the others follow from it unless they are set too.
     pub resolution: [Option<u32>; 3],
     /// The shortest axis gets `floor(factor * n^(1/4))` cells.
     pub factor: f64,
@@ -28,7 +28,7 @@ impl Default for Config {
 pub const MAX_CELLS: u64 = 1 << 27;
 
 /// Most triangle references of a grid whose resolution was set by hand: 4 GiB. More is an error.
-pub const MAX_RECORDS: u64 = 1 << 28;
+pub const MAX_REFS: u64 = 1 << 28;
 
 /// A grid that follows the rule is made coarser, edge by edge, until it has at most this many cells (per triangle, and
 /// at least and at most in all) ...
@@ -36,8 +36,9 @@ fn cell_limit(triangles: usize) -> u64 {
     (512 * triangles as u64).clamp(1 << 16, 1 << 25)
 }
 
-/// ... and at most this many triangle references. The published scenes need at most 100 cells and 23 triangle references per triangle; without
-/// the limits a nearly flat scene, or a thousand large triangles in the same place, would take all memory.
+/// ... and at most this many triangle references. The published scenes need at most 100 cells and 23 triangle
+/// references per triangle; without the limits a nearly flat scene, or a thousand large triangles in the same place,
+/// would take all memory.
 pub(crate) fn triangle_ref_limit(triangles: usize) -> u64 {
     (256 * triangles as u64).clamp(1 << 16, 1 << 26).max(triangles as u64)
 }
@@ -51,7 +52,8 @@ pub fn build(scene: &Scene, config: &Config) -> Result<Grid> {
     }
     let (layout, ranges, total) = lay_out(scene, config, &prims, &bounds)?;
 
-    // Count, one place to the right, so that the prefix sum below leaves every cell's first triangle reference in its place.
+    // Count, one place to the right, so that the prefix sum below leaves every cell's first triangle reference in its
+    // place.
     let mut starts = vec![0_u32; layout.cell_count() as usize + 1];
     for range in &ranges {
         layout.for_cells(range, |cell| starts[cell + 1] += 1);
@@ -62,7 +64,7 @@ pub fn build(scene: &Scene, config: &Config) -> Result<Grid> {
         *start = sum;
     }
 
-    // Fill in scene order: the triangles of a cell stand in ascending order. Every start moves to its cell's end.
+    // Fill in scene order: the triangles of a cell are in ascending order. Every start moves to its cell's end.
     let mut triangles = vec![0_u32; total as usize];
     for (prim, range) in prims.iter().zip(&ranges) {
         layout.for_cells(range, |cell| {
@@ -99,13 +101,10 @@ fn lay_out(scene: &Scene, config: &Config, prims: &[Prim], bounds: &Aabb) -> Res
                 range
             })
             .collect();
-        if by_hand && total > MAX_RECORDS {
-            return Err(Error::argument(
+        if by_hand && total > MAX_REFS {
+            return Err(Error::too_large(
                 format!("grid over {}", scene.name),
-                format!(
-                    "{:?} cells would take {total} triangle references, more than {MAX_RECORDS}",
-                    layout.resolution
-                ),
+                format!("{:?} cells would take {total} triangle references, more than {MAX_REFS}", layout.resolution),
                 "set fewer cells",
             ));
         }
@@ -166,7 +165,7 @@ impl Layout {
         };
         let cells = count(&extent, edge, resolution);
         if cells > MAX_CELLS {
-            return Err(Error::argument(
+            return Err(Error::too_large(
                 format!("grid over {scene}"),
                 format!("the resolution set by hand makes {cells} cells, more than {MAX_CELLS}"),
                 "set fewer cells",
@@ -194,8 +193,8 @@ impl Layout {
         self.resolution.iter().map(|&r| u64::from(r)).product()
     }
 
-    /// The cells that a box overlaps: on each axis from the last cell whose lower plane is at or below the box's minimum
-    /// to the last cell whose lower plane is at or below its maximum.
+    /// The cells that a box overlaps: on each axis from the last cell whose lower plane is at or below the box's
+    /// minimum to the last cell whose lower plane is at or below its maximum.
     fn range(&self, aabb: &Aabb) -> Range {
         std::array::from_fn(|a| [self.cell_of(a, aabb.min[a]), self.cell_of(a, aabb.max[a])])
     }
@@ -215,7 +214,7 @@ impl Layout {
         self.search(last, at_or_below)
     }
 
-    /// Planes never decrease with their index, whatever rounding does, so the cell can be searched by halving. Rounding
+    /// Planes never decrease with their index, in spite of rounding, so the cell can be searched by halving. Rounding
     /// moves a guess by one at most in ordinary scenes, but by many cells where cells are finer than floats.
     #[cold]
     fn search(&self, last: u32, at_or_below: impl Fn(u32) -> bool) -> u32 {

@@ -34,7 +34,8 @@ pub(crate) fn check(grid: &Grid, expected: &Expected) -> Verdict {
         ensure!(last >= grid.bounds.max[axis], "the cells end at {last} on axis {axis}, inside the bounds");
     }
 
-    // Every triangle stands in each of its cells, and nowhere else: as many triangle references as cells, so none is left over.
+    // Every triangle is in each of its cells, and nowhere else: as many triangle references as cells, so none is left
+    // over.
     let mut triangle_refs = 0_u64;
     for &triangle in &expected.hittable {
         let aabb = expected.aabb(triangle);
@@ -53,10 +54,7 @@ pub(crate) fn check(grid: &Grid, expected: &Expected) -> Verdict {
             }
         }
     }
-    ensure!(
-        triangle_refs == grid.triangle_refs.len() as u64,
-        "a triangle stands in a cell that its box does not overlap"
-    );
+    ensure!(triangle_refs == grid.triangle_refs.len() as u64, "a triangle is in a cell that its box does not overlap");
     Ok(())
 }
 

@@ -1,12 +1,34 @@
 //! Grid whose work-group shares out the triangle tests of all its rays. Twin of `kernels/trace/grid/coop.wgsl`.
 //!
 //! Who does a test changes neither what it finds nor to which ray it counts: what the kernel shares out among 64
-//! invocations is a plain loop here. A cell's tests are all done, also after one that blocks a shadow ray.
+//! invocations is a plain loop here. All tests of a cell are done, also after one that occludes a shadow ray.
 
-use crate::math::{Ray, T_MAX};
+use crate::math::{MISS, Ray};
+use crate::workloads::trace::algorithm::{Algorithm, Traversal};
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::grid::dda::Grid;
+use crate::workloads::trace::grid::{BUILDER, KIND};
+use crate::workloads::trace::options::PACKET;
 use crate::workloads::trace::traverse::{Best, TraverseIndependent};
+
+/// The grid with shared triangle tests.
+pub static GRID_COOP: Algorithm = Algorithm {
+    name: "grid-coop",
+    alias: "",
+    summary: "the same grid; the 64 threads of a group share out all triangle tests of the group",
+    paper: "",
+    builder: &BUILDER,
+    traversal: &COOP,
+    options: &[PACKET],
+};
+
+/// From cell to cell, with shared triangle tests.
+pub static COOP: Traversal = Traversal {
+    kernel: "trace/grid/coop.wgsl",
+    structure: &KIND,
+    twin: Some(|input| Ok(input.with(GridCoop { grid: Grid::of(&input)? }))),
+    ..Traversal::COOPERATIVE
+};
 
 /// See the module.
 pub struct GridCoop<'a> {
@@ -14,33 +36,20 @@ pub struct GridCoop<'a> {
     pub grid: Grid<'a>,
 }
 
-impl GridCoop<'_> {
-    /// The nearest hit before `limit`; with `any`, of the first cell that has one.
-    #[inline]
-    fn find<C: Count>(&self, ray: &Ray, limit: f32, any: bool, count: &mut C) -> Best {
-        let mut best = Best::NONE;
+impl TraverseIndependent for GridCoop<'_> {
+    fn traverse<const ANY: bool, C: Count>(&self, ray: &Ray, limit: f32, count: &mut C) -> u32 {
+        let mut best = Best::before(limit);
         let Some(mut walk) = self.grid.start_walk(ray, limit) else {
-            return best;
+            return MISS;
         };
         loop {
             count.inner();
             let cell = self.grid.cell(walk.cell);
-            self.grid.triangles.test_triangles(ray, cell.first, cell.count, &mut best, count);
-            let t_exit = walk.t_next.min_element();
-            let found = if any { best.t < limit || t_exit > limit } else { best.t < t_exit };
+            self.grid.triangles.test::<false, C>(ray, cell.first, cell.count, &mut best, count);
+            let found = best.t < walk.t_next.min_element() || (ANY && best.t < limit);
             if found || !self.grid.advance(ray, &mut walk, &mut best, count) {
-                return best;
+                return best.triangle_ref;
             }
         }
-    }
-}
-
-impl TraverseIndependent for GridCoop<'_> {
-    fn nearest_hit<C: Count>(&self, ray: &Ray, count: &mut C) -> u32 {
-        self.find(ray, T_MAX, false, count).triangle_ref
-    }
-
-    fn any_hit<C: Count>(&self, ray: &Ray, limit: f32, count: &mut C) -> bool {
-        self.find(ray, limit, true, count).t < limit
     }
 }

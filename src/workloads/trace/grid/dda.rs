@@ -1,16 +1,39 @@
 //! Uniform grid: 3D-DDA after Fujimoto et al. 1986 and Amanatides and Woo 1987. Twin of `kernels/trace/grid/dda.wgsl`,
 //! which says why borders are computed and not summed up.
 
+use crate::error::Result;
 use crate::math::{MISS, Ray, T_MAX, ray_box};
+use crate::workloads::trace::algorithm::{Algorithm, Traversal};
 use crate::workloads::trace::count::Count;
-use crate::workloads::trace::grid;
+use crate::workloads::trace::cpu::TwinInput;
 use crate::workloads::trace::grid::octants::{Octant, octants};
+use crate::workloads::trace::grid::{self, BUILDER, KIND};
+use crate::workloads::trace::options::GROUP;
 use crate::workloads::trace::traverse::{Best, TraverseIndependent, Triangles};
 use glam::{IVec3, Vec3A};
 
+/// The grid of the thesis.
+pub static GRID: Algorithm = Algorithm {
+    name: "grid",
+    alias: "",
+    summary: "uniform grid, walked by a 3D-DDA",
+    paper: "Fujimoto et al. 1986; Amanatides and Woo 1987",
+    builder: &BUILDER,
+    traversal: &DDA,
+    options: &[GROUP],
+};
+
+/// From cell to cell.
+pub static DDA: Traversal = Traversal {
+    kernel: "trace/grid/dda.wgsl",
+    structure: &KIND,
+    twin: Some(|input| Ok(input.with(Grid::of(&input)?))),
+    ..Traversal::INDEPENDENT
+};
+
 /// See the module.
 pub struct Grid<'a> {
-    /// Records and vertices.
+    /// Triangle references and vertices.
     pub triangles: Triangles<'a>,
     pub(crate) grid: &'a grid::Grid,
     pub(crate) min: Vec3A,
@@ -29,15 +52,16 @@ pub(crate) struct Walk {
 
 impl<'a> Grid<'a> {
     /// A traversal of a built grid.
-    pub fn new(triangles: Triangles<'a>, grid: &'a grid::Grid) -> Self {
-        Grid {
-            triangles,
+    pub(crate) fn of(input: &TwinInput<'a>) -> Result<Self> {
+        let grid: &grid::Grid = input.structure()?;
+        Ok(Grid {
+            triangles: input.triangles(),
             grid,
             min: grid.bounds.min.into(),
             max: grid.bounds.max.into(),
             resolution: IVec3::from_array(grid.resolution.map(|n| n as i32)),
             octants: octants(grid.resolution),
-        }
+        })
     }
 
     /// Distance of the plane below cell `index` of an axis.
@@ -61,9 +85,9 @@ impl<'a> Grid<'a> {
         let ahead = step.cmpgt(IVec3::ZERO);
         let ahead = IVec3::select(ahead, IVec3::ONE, IVec3::ZERO);
 
-        // Guess the first cell by the ray's position, and find it by the distances of borders: the first one that the ray
-        // touches at `t_start`. Where the direction is zero, the ray stays in the cell whose lower plane is the last at
-        // or below it, which holds the triangles on both sides of that plane.
+        // Guess the first cell by the ray's position, and find it by the distances of borders: the first one that the
+        // ray touches at `t_start`. Where the direction is zero, the ray stays in the cell whose lower plane is the
+        // last at or below it, which holds the triangles on both sides of that plane.
         let guess = ((ray.origin + ray.direction * t_start - self.min) / self.grid.cell_size).floor();
         let mut cell = guess.max(Vec3A::ZERO).min(self.resolution.as_vec3a() - 1.0).as_ivec3();
         let mut t_next = Vec3A::ZERO;
@@ -142,7 +166,7 @@ impl<'a> Grid<'a> {
                     if place != walk.cell && (place != last || leaves) {
                         count.inner();
                         let cell = self.cell(place);
-                        self.triangles.test_triangles(ray, cell.first, cell.count, best, count);
+                        self.triangles.test::<false, C>(ray, cell.first, cell.count, best, count);
                     }
                 }
             }
@@ -153,40 +177,24 @@ impl<'a> Grid<'a> {
 }
 
 impl TraverseIndependent for Grid<'_> {
-    fn nearest_hit<C: Count>(&self, ray: &Ray, count: &mut C) -> u32 {
-        let mut best = Best::NONE;
-        let Some(mut walk) = self.start_walk(ray, T_MAX) else {
+    fn traverse<const ANY: bool, C: Count>(&self, ray: &Ray, limit: f32, count: &mut C) -> u32 {
+        let mut best = Best::before(limit);
+        let Some(mut walk) = self.start_walk(ray, limit) else {
             return MISS;
         };
         loop {
-            // Test everything in this cell
             count.inner();
             let cell = self.cell(walk.cell);
-            self.triangles.test_triangles(ray, cell.first, cell.count, &mut best, count);
+            if self.triangles.test::<ANY, C>(ray, cell.first, cell.count, &mut best, count) {
+                return best.triangle_ref;
+            }
             // A hit ends the search only inside this cell: in front of a farther one something nearer may lie. At the
             // very border the next cell may hold a triangle at the same distance with a lower index.
             if best.t < walk.t_next.min_element() || !self.advance(ray, &mut walk, &mut best, count) {
                 return best.triangle_ref;
             }
-        }
-    }
-
-    fn any_hit<C: Count>(&self, ray: &Ray, limit: f32, count: &mut C) -> bool {
-        let mut best = Best::NONE;
-        let Some(mut walk) = self.start_walk(ray, limit) else {
-            return false;
-        };
-        loop {
-            count.inner();
-            let cell = self.cell(walk.cell);
-            if self.triangles.any_triangle_occludes(ray, cell.first, cell.count, limit, count) {
-                return true;
-            }
-            if walk.t_next.min_element() > limit || !self.advance(ray, &mut walk, &mut best, count) {
-                return best.t < limit;
-            }
-            if best.t < limit {
-                return true;
+            if ANY && best.triangle_ref != MISS {
+                return best.triangle_ref;
             }
         }
     }

@@ -1,8 +1,8 @@
-//! The grid traversal's constants by ray octant: looked up instead of computed, which saves registers (SPEC section 2).
+//! The grid traversal's constants by ray octant: looked up instead of computed, which saves registers.
 
 use bytemuck::{Pod, Zeroable};
 
-/// Constants of one octant; `Octant` of `kernels/trace/scene.wgsl`. The fourth components are zero.
+/// Constants of one octant; `Octant` of `kernels/trace/grid/walk.wgsl`. The fourth components are zero.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
 #[repr(C)]
 pub struct Octant {

@@ -1,14 +1,36 @@
 //! Grid walked by packets, slice by slice (Wald et al. 2006). Twin of `kernels/trace/grid/packet.wgsl`.
 //!
-//! The packet's main axis is the one along which most of its rays run fastest. In every slice of cells across it, each
+//! The packet's major axis is the one along which most of its rays run fastest. In every slice of cells across it, each
 //! ray has a rectangle of cells that it may touch; all rays test the triangles of all cells in the rectangle around
 //! these, again if they meet them in several cells (no mailboxing).
 
-use crate::math::{MISS, Ray, T_MAX, ray_box};
+use crate::math::{Ray, ray_box};
+use crate::workloads::trace::algorithm::{Algorithm, Traversal};
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::grid::dda::Grid;
-use crate::workloads::trace::traverse::{Best, GROUP, Lanes, Traverse, bits};
+use crate::workloads::trace::grid::{BUILDER, KIND};
+use crate::workloads::trace::options::PACKET;
+use crate::workloads::trace::traverse::{Best, GROUP, Lanes, Traverse, bits, set_of};
 use glam::{IVec3, Vec3A};
+
+/// The grid with packets.
+pub static GRID_PACKET: Algorithm = Algorithm {
+    name: "grid-packet",
+    alias: "",
+    summary: "the same grid; packets march through it slice by slice along their major axis",
+    paper: "Wald et al. 2006",
+    builder: &BUILDER,
+    traversal: &SLICES,
+    options: &[PACKET],
+};
+
+/// From slice to slice.
+pub static SLICES: Traversal = Traversal {
+    kernel: "trace/grid/packet.wgsl",
+    structure: &KIND,
+    twin: Some(|input| Ok(input.with(GridPacket { grid: Grid::of(&input)? }))),
+    ..Traversal::COOPERATIVE
+};
 
 /// See the module.
 pub struct GridPacket<'a> {
@@ -21,7 +43,7 @@ type Range = (i32, i32);
 
 /// Where the packet goes.
 struct March {
-    /// Main axis, and the two across.
+    /// Major axis, and the two across.
     axes: [usize; 3],
     /// True if it runs towards larger coordinates.
     forward: bool,
@@ -29,14 +51,15 @@ struct March {
     slices: Range,
 }
 
-/// What the rays of a packet know of themselves.
+/// The distances between which a ray is in the grid and before its limit.
 struct Interval {
     near: f32,
     far: f32,
 }
 
-/// The main axis of a ray: the one on which it moves fastest, the first of equals; plus 3 if it runs downwards.
-fn course(ray: &Ray) -> usize {
+/// The major axis of a ray, on which it moves fastest, the first of equals; plus 3 if it runs towards
+/// smaller coordinates.
+fn major_axis(ray: &Ray) -> usize {
     let d = ray.direction.abs();
     let axis = if d.x >= d.y && d.x >= d.z {
         0
@@ -69,11 +92,11 @@ impl GridPacket<'_> {
         (a.min(b), a.max(b))
     }
 
-    /// Distance at which the ray leaves the slab of a slice; it is behind a ray in the upper plane, which is in the next
-    /// slice as well.
+    /// Distance at which the ray leaves the slab of a slice; it is behind a ray in the upper plane, which is in the
+    /// next slice as well.
     #[inline]
-    fn leave_slice(&self, ray: &Ray, main: usize, index: i32) -> f32 {
-        self.border(ray, main, index, ray.origin).max(self.border(ray, main, index + 1, ray.origin_min))
+    fn leave_slice(&self, ray: &Ray, major: usize, index: i32) -> f32 {
+        self.border(ray, major, index, ray.origin).max(self.border(ray, major, index + 1, ray.origin_min))
     }
 
     /// All cells of an axis whose slab the ray is in at any distance from `lo` to `hi`.
@@ -108,39 +131,38 @@ impl GridPacket<'_> {
         (from, to)
     }
 
-    /// The packet's way: decided by all rays that take part.
+    /// Chooses the packet's major axis and slices by all rays that take part.
     fn plan(&self, rays: &Lanes<Ray>, intervals: &Lanes<Interval>, searching: u64) -> March {
-        let mut courses = [0; 6];
-        bits(searching).for_each(|lane| courses[course(&rays[lane])] += 1);
-        let best = (0..6).fold(0, |best, i| if courses[i] > courses[best] { i } else { best });
-        let main = best % 3;
-        let axes = [main, (main + 1) % 3, (main + 2) % 3];
-        let own = |lane: usize| self.cells_between(&rays[lane], main, intervals[lane].near, intervals[lane].far);
+        let mut axis_votes = [0; 6];
+        bits(searching).for_each(|lane| axis_votes[major_axis(&rays[lane])] += 1);
+        let best = (0..6).fold(0, |best, i| if axis_votes[i] > axis_votes[best] { i } else { best });
+        let major = best % 3;
+        let axes = [major, (major + 1) % 3, (major + 2) % 3];
+        let own = |lane: usize| self.cells_between(&rays[lane], major, intervals[lane].near, intervals[lane].far);
         let slices = bits(searching).map(own).fold(NO_CELLS, union);
         March { axes, forward: best < 3, slices }
     }
+}
 
-    /// Lets all rays go through the grid and finds their nearest hits before `limit`; with `any`, some hit.
-    fn march<C: Count>(
+impl Traverse for GridPacket<'_> {
+    /// With `ANY`, all tests of the first slice that has a hit are done.
+    fn traverse<const ANY: bool, C: Count>(
         &self,
         rays: &Lanes<Ray>,
         limit: f32,
         alive: u64,
-        best: &mut Lanes<Best>,
-        any: bool,
         counters: &mut Lanes<C>,
-    ) {
+    ) -> Lanes<u32> {
+        let mut best = [Best::before(limit); GROUP];
         let intervals: Lanes<Interval> = std::array::from_fn(|lane| {
             let (near, far) = ray_box(&rays[lane], self.grid.min, self.grid.max);
             Interval { near: near.max(0.0), far: far.min(limit) }
         });
-        let mut searching = bits(alive)
-            .filter(|&lane| intervals[lane].near <= intervals[lane].far)
-            .fold(0u64, |set, lane| set | 1 << lane);
+        let mut searching = set_of(bits(alive).filter(|&lane| intervals[lane].near <= intervals[lane].far));
         if searching == 0 {
-            return;
+            return best.map(|best| best.triangle_ref);
         }
-        let March { axes: [main, u, v], forward, slices: (first, last) } = self.plan(rays, &intervals, searching);
+        let March { axes: [major, u, v], forward, slices: (first, last) } = self.plan(rays, &intervals, searching);
         for step in 0..=last - first {
             let slice = if forward { first + step } else { last - step };
             // Which cells of the slice the rays touch
@@ -148,7 +170,7 @@ impl GridPacket<'_> {
             let mut touching = 0u64;
             for lane in bits(searching) {
                 let ray = &rays[lane];
-                let (enter, leave) = self.slab(ray, main, slice);
+                let (enter, leave) = self.slab(ray, major, slice);
                 let (lo, hi) = (enter.max(intervals[lane].near), leave.min(intervals[lane].far));
                 if lo <= hi {
                     touching |= 1 << lane;
@@ -160,43 +182,31 @@ impl GridPacket<'_> {
             for j in along.0..=along.1 {
                 for i in across.0..=across.1 {
                     let mut place = IVec3::ZERO;
-                    (place[main], place[u], place[v]) = (slice, i, j);
+                    (place[major], place[u], place[v]) = (slice, i, j);
                     let cell = self.grid.cell(place);
                     for lane in bits(touching) {
                         let (counted, best) = (&mut counters[lane], &mut best[lane]);
                         counted.inner();
-                        self.grid.triangles.test_triangles(&rays[lane], cell.first, cell.count, best, counted);
+                        self.grid.triangles.test::<false, C>(&rays[lane], cell.first, cell.count, best, counted);
                     }
                 }
             }
-            // Who runs with the packet is done with a hit before the slice's end; others may find a nearer one later
+            // A ray that runs with the packet is done with a hit before the slice's end; another may find a nearer one
+            // later
             for lane in bits(searching) {
                 let ray = &rays[lane];
-                let leave = self.leave_slice(ray, main, slice);
-                let with_packet = (ray.inv_direction[main] >= 0.0) == forward;
+                let leave = self.leave_slice(ray, major, slice);
+                let with_packet = (ray.inv_direction[major] >= 0.0) == forward;
                 let behind = with_packet && leave > intervals[lane].far;
-                let found = if any { best[lane].t < limit } else { with_packet && best[lane].t < leave };
+                let found = if ANY { best[lane].t < limit } else { with_packet && best[lane].t < leave };
                 if behind || found {
                     searching &= !(1 << lane);
                 }
             }
             if searching == 0 {
-                return;
+                break;
             }
         }
-    }
-}
-
-impl Traverse for GridPacket<'_> {
-    fn nearest_hits<C: Count>(&self, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<C>) -> Lanes<u32> {
-        let mut best = [Best::NONE; GROUP];
-        self.march(rays, T_MAX, alive, &mut best, false, counters);
-        best.map(|best| if best.t < T_MAX { best.triangle_ref } else { MISS })
-    }
-
-    fn any_hits<C: Count>(&self, rays: &Lanes<Ray>, limit: f32, alive: u64, counters: &mut Lanes<C>) -> u64 {
-        let mut best = [Best::NONE; GROUP];
-        self.march(rays, limit, alive, &mut best, true, counters);
-        bits(alive).filter(|&lane| best[lane].t < limit).fold(0, |set, lane| set | 1 << lane)
+        best.map(|best| best.triangle_ref)
     }
 }

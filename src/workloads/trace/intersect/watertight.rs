@@ -10,9 +10,9 @@
 //! is inside a triangle if the signs of the three edge functions agree. Such a sign is found by comparing two rounded
 //! products. Rounding is monotone, so a sign is never wrong; it may only be zero where the exact one is not. Two
 //! triangles that share an edge compare the same two numbers. So the accepted area of a triangle covers the triangle of
-//! its rounded corners, these cover the mesh without gaps, and a ray through an edge or a vertex hits at least one of its
-//! triangles. A triangle seen edge-on, whose signs are all zero, is missed. A nearly edge-on triangle may be hit outside
-//! its area where two signs round to zero; the interval of its own box bounds that.
+//! its rounded corners, these cover the mesh without gaps, and a ray through an edge or a vertex hits at least one of
+//! its triangles. A triangle seen edge-on, whose signs are all zero, is missed. A nearly edge-on triangle may be hit
+//! outside its area where two signs round to zero; the interval of its own box bounds that.
 //!
 //! No compiler can spoil this by contracting operations: comparisons are not contracted, and of the two products in `q`
 //! the factor `scale` is a power of two, so that fusing changes nothing.

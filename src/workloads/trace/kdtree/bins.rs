@@ -17,8 +17,8 @@ pub const MAX_BINS: usize = 64;
 
 /// The borders of one axis's bins, which are the candidate planes.
 ///
-/// A bin's number is defined by the planes themselves (the multiplication is a first guess, mended by comparing), so
-/// that counting by bins and comparing a box with the chosen plane cannot disagree, whatever rounding does.
+/// A bin's number is defined by the planes themselves (the multiplication is a first guess, corrected by comparing), so
+/// that counting by bins and comparing a box with the chosen plane cannot disagree through rounding.
 struct Axis {
     /// `planes[b]` lies below bin `b`; `planes[0]` is below everything, the one behind the last bin above everything.
     planes: [f32; MAX_BINS + 1],
@@ -120,8 +120,8 @@ impl Tally {
 }
 
 /// The cheapest plane for the triangles `own` (numbers in `prims`) on any axis; none that cuts off less than `thin`.
-/// Candidates lie between `bins` equal slices of `over`, a part of the cell outside of which there is nothing of them; so do
-/// its borders, if they are not the cell's.
+/// Candidates lie between `bins` equal slices of `over`, a part of the cell outside of which there is nothing of them;
+/// so do its borders, if they are not the cell's.
 pub(crate) fn find(prims: &[Prim], own: &[u32], cell: &Aabb, over: &Aabb, bins: usize, thin: f32) -> Option<Split> {
     let axes = [0, 1, 2].map(|a| Axis::new(over.min[a], over.max[a], bins));
     let guess = Guess::new(over, bins);

@@ -1,4 +1,4 @@
-//! kd-tree builder: top down, greedy SAH on boxes; binned above, exact below (SPEC section 3).
+//! kd-tree builder: top down, greedy SAH on boxes; binned above, exact below.
 //!
 //! A triangle goes to every side that its box reaches into. A box that merely touches the plane stays on its own side,
 //! and one that lies in the plane goes to the cheaper side. No plane ever lies on the border of the cell that it
@@ -17,11 +17,11 @@ use crate::workloads::trace::kdtree::{KdNode, KdTree};
 use glam::{BVec4A, Vec4};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// No tree is deeper than this, whatever is set.
+/// Greatest depth of any tree.
 pub const MAX_DEPTH: u32 = 60;
 
-/// Most leaves and triangle references together, whatever the scene: links have 30 bits, and a device's buffers are smaller still.
-pub const MAX_LEAVES_AND_RECORDS: usize = 1 << 28;
+/// Most leaves and triangle references together: links have 30 bits, and a device's buffers are smaller still.
+pub const MAX_LEAVES_AND_REFS: usize = 1 << 28;
 
 /// Sides with fewer triangles than this together are built one after the other.
 const TASK: usize = 2048;
@@ -37,7 +37,7 @@ pub struct Config {
     pub exact_below: usize,
     /// `K_t` and `K_i`.
     pub cost: CostModel,
-    /// Nodes of at most so many triangles are leaves, whatever their splits would cost.
+    /// Nodes of at most so many triangles are always leaves.
     pub small_leaf: usize,
     /// Greatest depth, at most [`MAX_DEPTH`]; `None` is `8 + 1.3 log2(triangles)`.
     pub max_depth: Option<u32>,
@@ -95,11 +95,11 @@ pub(crate) struct Builder {
     never_split: usize,
     /// Most leaves and triangle references.
     pub limit: usize,
-    spent: AtomicUsize,
+    charged: AtomicUsize,
 }
 
 impl Builder {
-    /// True if a node must be a leaf, whatever its splits would cost.
+    /// True if a node must be a leaf without looking for a split.
     pub fn must_stop(&self, triangles: usize, depth: u32) -> bool {
         depth >= self.max_depth || triangles <= self.never_split
     }
@@ -111,14 +111,14 @@ impl Builder {
         cost.traversal * area + cost.intersection * weighted < cost.leaf(triangles as u32) * area
     }
 
-    /// Accounts for leaves and triangle references.
-    pub fn spend(&self, leaves_and_records: usize) {
-        self.spent.fetch_add(leaves_and_records, Relaxed);
+    /// Charges leaves and triangle references to the budget.
+    pub fn charge(&self, leaves_and_refs: usize) {
+        self.charged.fetch_add(leaves_and_refs, Relaxed);
     }
 
-    /// True if the tree has become too large: whatever is still built is thrown away.
-    pub fn is_broke(&self) -> bool {
-        self.spent.load(Relaxed) > self.limit
+    /// True if the tree has become too large: it will be thrown away.
+    pub fn over_budget(&self) -> bool {
+        self.charged.load(Relaxed) > self.limit
     }
 
     /// Builds the subtree of some triangles.
@@ -129,17 +129,17 @@ impl Builder {
             let prims: Vec<Prim> = own.iter().map(|&i| prims[i as usize]).collect();
             return Part::Subtree(exact::build(self, &prims, cell, depth));
         }
-        let split = if self.must_stop(count, depth) || self.is_broke() {
+        let split = if self.must_stop(count, depth) || self.over_budget() {
             None
         } else {
             bins::find(prims, &own, &cell, &self.over(&cell, content), self.config.bins, self.thin)
                 .filter(|split| self.pays(count, split.weighted, half_area(&cell)))
         };
         let Some(split) = split else {
-            self.spend(1 + count);
+            self.charge(1 + count);
             return Part::Subtree(Subtree::leaf(prims, &own));
         };
-        let (left, right) = divide(prims, &own, &split);
+        let (left, right) = partition(prims, &own, &split);
         drop(own);
         let (left_cell, right_cell) = halves(&cell, split.axis, split.plane);
         let a = || self.grow(prims, left, left_cell, depth + 1);
@@ -167,7 +167,7 @@ struct Side {
 
 /// Both sides' triangles, in their order. Every triangle is written to both, and only the sides that it belongs to
 /// advance (each has room for one more) and grow: no branch to mispredict.
-fn divide(prims: &[Prim], own: &[u32], split: &Split) -> (Side, Side) {
+fn partition(prims: &[Prim], own: &[u32], split: &Split) -> (Side, Side) {
     let Split { axis, plane, planar_left, .. } = *split;
     let (mut left, mut right) = (vec![0; split.left + 1], vec![0; split.right + 1]);
     let (mut left_count, mut right_count) = (0, 0);
@@ -236,7 +236,8 @@ impl Part {
         }
     }
 
-    /// Writes this part, whose first node is number `node` and whose first triangle reference is number `record` of the tree.
+    /// Writes this part, whose first node is number `node` and whose first triangle reference is number `first` of the
+    /// tree.
     fn place(self, scene: &Scene, nodes: &mut [KdNode], triangle_refs: &mut [TriangleRef], node: u32, first: u32) {
         match self {
             Part::Subtree(s) => {
@@ -249,14 +250,14 @@ impl Part {
             }
             Part::Inner(axis, plane, parts) => {
                 let (left, right) = *parts;
-                let (left_nodes, left_records, _) = left.size();
+                let (left_nodes, left_refs, _) = left.size();
                 let right_node = node + 1 + left_nodes as u32;
                 nodes[0] = KdNode::inner(axis as u32, plane, right_node);
                 let (a, b) = nodes[1..].split_at_mut(left_nodes);
-                let (c, d) = triangle_refs.split_at_mut(left_records);
+                let (c, d) = triangle_refs.split_at_mut(left_refs);
                 rayon::join(
                     || left.place(scene, a, c, node + 1, first),
-                    || right.place(scene, b, d, right_node, first + left_records as u32),
+                    || right.place(scene, b, d, right_node, first + left_refs as u32),
                 );
             }
         }
@@ -273,10 +274,11 @@ impl KdNode {
     }
 }
 
-/// Most leaves and triangle references of the tree over so many triangles. The published trees have at most ten per triangle. Where
-/// long triangles cross in a plane, splits that pay in the model double the triangle references from level to level.
+/// Most leaves and triangle references of the tree over so many triangles. The published trees have at most ten per
+/// triangle. Where long triangles cross in a plane, splits that pay in the model double the triangle references from
+/// level to level.
 fn limit(triangles: usize) -> usize {
-    (256 * triangles).min((1 << 26).max(32 * triangles)).clamp(1 << 16, MAX_LEAVES_AND_RECORDS)
+    (256 * triangles).min((1 << 26).max(32 * triangles)).clamp(1 << 16, MAX_LEAVES_AND_REFS)
 }
 
 /// The depth to try after one that made the tree too large.
@@ -314,16 +316,16 @@ pub fn build(scene: &Scene, config: &Config) -> Result<KdBuilt> {
         thin: bounds.diagonal() * config.thin,
         never_split,
         limit: limit(prims.len()),
-        spent: AtomicUsize::new(0),
+        charged: AtomicUsize::new(0),
     };
     let part = loop {
         let all = Side { own: (0..prims.len() as u32).collect(), content: bounds };
         let part = builder.grow(&prims, all, bounds, 0);
-        if !builder.is_broke() {
+        if !builder.over_budget() {
             break part;
         }
         if builder.max_depth == 0 {
-            return Err(Error::argument(
+            return Err(Error::too_large(
                 format!("kdtree over {}", scene.name),
                 format!("takes more than {} leaves and triangle references", builder.limit),
                 "use a smaller scene",
@@ -331,11 +333,11 @@ pub fn build(scene: &Scene, config: &Config) -> Result<KdBuilt> {
         }
         drop(part);
         builder.max_depth = shallower(builder.max_depth, prims.len());
-        builder.spent = AtomicUsize::new(0);
+        builder.charged = AtomicUsize::new(0);
     };
-    let (node_count, record_count, depth) = part.size();
+    let (node_count, ref_count, depth) = part.size();
     let mut nodes = vec![KdNode::leaf(0, 0); node_count];
-    let mut triangle_refs = vec![TriangleRef { vertices: [0; 3], triangle: 0 }; record_count];
+    let mut triangle_refs = vec![TriangleRef { vertices: [0; 3], triangle: 0 }; ref_count];
     part.place(scene, &mut nodes, &mut triangle_refs, 0, 0);
     let tree = KdTree { bounds, nodes, triangle_refs, depth };
     Ok(KdBuilt { tree, max_depth: builder.max_depth, cut: builder.max_depth < asked })

@@ -8,7 +8,7 @@ use crate::workloads::trace::kdtree::{KdNode, KdTree};
 const DEPTH_LIMIT: u32 = 1024;
 
 pub(crate) fn check(tree: &KdTree, expected: &Expected) -> Verdict {
-    let mut walk = Walk { tree, expected, next_record: 0, depth: 0, leaf_starts: Vec::new() };
+    let mut walk = Walk { tree, expected, next_ref: 0, depth: 0, leaf_starts: Vec::new() };
     let root = KdNode::leaf(0, 0);
     if expected.hittable.is_empty() {
         ensure!(
@@ -22,10 +22,10 @@ pub(crate) fn check(tree: &KdTree, expected: &Expected) -> Verdict {
     let end = walk.shape(0, 0)?;
     ensure!(end == tree.nodes.len(), "{} nodes, {end} reached", tree.nodes.len());
     ensure!(
-        walk.next_record == tree.triangle_refs.len(),
+        walk.next_ref == tree.triangle_refs.len(),
         "{} triangle references, {} in leaves",
         tree.triangle_refs.len(),
-        walk.next_record
+        walk.next_ref
     );
     ensure!(walk.depth == tree.depth, "depth is {}, the field says {}", walk.depth, tree.depth);
     walk.content(0, &tree.bounds, &expected.hittable)
@@ -34,7 +34,7 @@ pub(crate) fn check(tree: &KdTree, expected: &Expected) -> Verdict {
 struct Walk<'a> {
     tree: &'a KdTree,
     expected: &'a Expected<'a>,
-    next_record: usize,
+    next_ref: usize,
     depth: u32,
     /// For every node, the first triangle reference of the leaves below it.
     leaf_starts: Vec<usize>,
@@ -47,18 +47,18 @@ impl Walk<'_> {
         let Some(&node) = self.tree.nodes.get(index) else {
             return Err(format!("node {index} is a child, but lies behind the last node"));
         };
-        self.leaf_starts.push(self.next_record);
+        self.leaf_starts.push(self.next_ref);
         if node.is_leaf() {
             self.depth = self.depth.max(depth);
             ensure!(
-                node.first() as usize == self.next_record,
+                node.first() as usize == self.next_ref,
                 "leaf {index} begins at triangle reference {}, not at {} behind its neighbour",
                 node.first(),
-                self.next_record
+                self.next_ref
             );
-            self.next_record += node.count() as usize;
+            self.next_ref += node.count() as usize;
             ensure!(
-                self.next_record <= self.tree.triangle_refs.len(),
+                self.next_ref <= self.tree.triangle_refs.len(),
                 "leaf {index} reaches behind the last triangle reference"
             );
             return Ok(index + 1);

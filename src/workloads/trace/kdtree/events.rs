@@ -53,8 +53,8 @@ pub(crate) fn begun(event: Event) -> u32 {
     (event >> 31 | event >> 30) as u32 & 1
 }
 
-/// The sweep where no triangle lies in a plane of its axis: every event is a candidate by itself, allowed or not. Returns
-/// the lowest cost (bits of an f32) and, below it, the event that has it.
+/// The sweep where no triangle lies in a plane of its axis: every event is a candidate by itself, allowed or not.
+/// Returns the lowest cost (bits of an f32) and, below it, the event that has it.
 ///
 /// Of several events in one plane, all but the last end and the first start see too many triangles on one side, and so
 /// cost more than the plane does; they need no care. With the area `p` on the left and `s - p` on the right (`s` is
@@ -62,8 +62,8 @@ pub(crate) fn begun(event: Event) -> u32 {
 /// every event. Most lists are so short that a mispredicted branch costs more than an event: there is none but the
 /// loop's.
 ///
-/// `events` goes on behind the first `own`, by at least [`SPARE`]: four events are read at a time, and those that are not
-/// the list's own not regarded.
+/// `events` goes on behind the first `own`, by at least [`SPARE`]: four events are read at a time, and those that are
+/// not the list's own not regarded.
 #[inline(always)]
 pub(crate) fn sweep(events: &[Event], own: usize, areas: &Areas, count: usize) -> u64 {
     if own == 0 {
@@ -97,7 +97,7 @@ pub(crate) fn sweep(events: &[Event], own: usize, areas: &Areas, count: usize) -
     ranks[0].min(ranks[1]).min(ranks[2].min(ranks[3]))
 }
 
-/// By so many events must a list that is swept be longer than its own.
+/// Padding that a swept list needs after its own events.
 pub(crate) const SPARE: usize = 3;
 
 /// Which of four events are starts (none is planar), as bits.
@@ -145,10 +145,11 @@ fn ranked(cost: f32, position: usize) -> u64 {
     u64::from(cost.max(0.0).to_bits()) << 32 | position as u64
 }
 
-/// The sweep with care for everything, by groups of events in one plane: ends and planar triangles leave the right before
-/// the plane is judged, planar ones and starts enter the left after it. Also returns whether planar triangles go left.
+/// The sweep for lists with planar triangles or planes at the border, by groups of events in one plane: ends and planar
+/// triangles leave the right before the plane is judged, planar ones and starts enter the left after it. Also returns
+/// whether planar triangles go left.
 #[cold]
-pub(crate) fn careful_sweep(events: &[Event], areas: &Areas, count: usize) -> (u64, bool) {
+pub(crate) fn sweep_with_planar(events: &[Event], areas: &Areas, count: usize) -> (u64, bool) {
     let begun_inside = events.iter().filter(|&&e| kind(e) != END).count();
     let (mut left, mut right) = (count - begun_inside, count);
     let mut cheapest = (u64::MAX, true);

@@ -11,8 +11,8 @@ use crate::workloads::trace::kdtree::KdNode;
 use crate::workloads::trace::kdtree::bins::Areas;
 use crate::workloads::trace::kdtree::build::{Builder, Subtree, halves};
 use crate::workloads::trace::kdtree::events::{
-    END, Event, PLANAR, SPARE, START, begun, careful_sweep, coordinate, event, kind, local, ordered, restored, starts,
-    sweep,
+    END, Event, PLANAR, SPARE, START, begun, coordinate, event, kind, local, ordered, restored, starts, sweep,
+    sweep_with_planar,
 };
 
 /// Sides that a triangle goes to, as bits.
@@ -28,7 +28,7 @@ pub(crate) fn build(builder: &Builder, prims: &[Prim], cell: Aabb, depth: u32) -
         events: Default::default(),
         any_planar: [false; 3],
         unit: 1.0,
-        broke: builder.is_broke(),
+        over_budget: builder.over_budget(),
         side: vec![LEFT | RIGHT; prims.len()],
         out: Subtree::default(),
     };
@@ -43,7 +43,7 @@ pub(crate) fn build(builder: &Builder, prims: &[Prim], cell: Aabb, depth: u32) -
     }
     sweep.unit = unit(&cell);
     sweep.out.depth = sweep.grow(&root);
-    builder.spend(sweep.size());
+    builder.charge(sweep.size());
     sweep.out
 }
 
@@ -81,7 +81,7 @@ struct Node {
     top: [u32; 4],
 }
 
-/// Triangles' numbers stand in `top[LOCALS]`.
+/// Triangles' numbers are in `top[LOCALS]`.
 const LOCALS: usize = 3;
 
 /// A plane that pays.
@@ -97,14 +97,15 @@ struct Cut {
 struct Sweep<'a> {
     builder: &'a Builder,
     prims: &'a [Prim],
-    /// Lists of triangles (numbers in `prims`, ascending), used like a stack: children's lists lie above their parent's.
+    /// Lists of triangles (numbers in `prims`, ascending), used like a stack: children's lists lie above their
+    /// parent's.
     locals: Vec<u32>,
     /// Lists of events, likewise.
     events: [Vec<Event>; 3],
     /// About 1 over the extent of the subtree's cell.
     unit: f32,
     /// The tree has become too large.
-    broke: bool,
+    over_budget: bool,
     /// Axes with triangles that lie in a plane.
     any_planar: [bool; 3],
     /// Where a triangle goes while its node is being split; to both sides at all other times.
@@ -140,14 +141,14 @@ impl Sweep<'_> {
 
     /// Builds the subtree of a node; returns its depth.
     fn grow(&mut self, node: &Node) -> u32 {
-        let stop = self.broke || self.builder.must_stop(node.locals.len(), node.depth);
+        let stop = self.over_budget || self.builder.must_stop(node.locals.len(), node.depth);
         let Some(cut) = (if stop { None } else { self.find(node) }) else {
             self.leaf(node);
             return 0;
         };
         let index = self.out.nodes.len();
         self.out.nodes.push(KdNode::leaf(0, 0));
-        let [left, right] = self.divide(node, &cut);
+        let [left, right] = self.partition(node, &cut);
         let left_depth = self.grow(&left);
         let right_index = self.out.nodes.len() as u32;
         let right_depth = self.grow(&right);
@@ -161,7 +162,7 @@ impl Sweep<'_> {
     }
 
     fn leaf(&mut self, node: &Node) {
-        self.broke |= self.size() > self.builder.limit;
+        self.over_budget |= self.size() > self.builder.limit;
         let locals = node.locals.of(&self.locals);
         self.out.nodes.push(KdNode::leaf(self.out.triangles.len() as u32, locals.len() as u32));
         self.out.triangles.extend(locals.iter().map(|&l| self.prims[l as usize].triangle()));
@@ -181,7 +182,7 @@ impl Sweep<'_> {
             }
             // Seldom is the cheapest plane one that would cut off too thin a slice: then again, without such.
             if planar || (found != u64::MAX && !areas.allows(coordinate(events[found as u32 as usize]))) {
-                (found, left) = careful_sweep(events, areas, count);
+                (found, left) = sweep_with_planar(events, areas, count);
             }
             if found < cheapest {
                 (cheapest, axis, planar_left) = (found, a, left);
@@ -201,7 +202,7 @@ impl Sweep<'_> {
     }
 
     /// Makes the children's lists; returns the left and the right child.
-    fn divide(&mut self, node: &Node, cut: &Cut) -> [Node; 2] {
+    fn partition(&mut self, node: &Node, cut: &Cut) -> [Node; 2] {
         self.classify(node, cut);
         let (left_cell, right_cell) = halves(&node.cell, cut.axis, cut.plane);
         let child = |cell| Node { cell, depth: node.depth + 1, ..*node };

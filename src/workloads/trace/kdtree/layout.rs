@@ -1,8 +1,18 @@
-//! kd-tree (SPEC section 3).
+//! kd-tree.
 
+use super::{KIND, check};
 use crate::math::Aabb;
-use crate::workloads::trace::TriangleRef;
+use crate::scene::Scene;
+use crate::workloads::trace::common::check::{Expected, Verdict};
+use crate::workloads::trace::common::memory;
+use crate::workloads::trace::common::properties::Leaves;
+use crate::workloads::trace::common::sah::CostModel;
+use crate::workloads::trace::structure::finite;
+use crate::workloads::trace::{Properties, Structure, StructureKind, TriangleRef};
 use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+use std::any::Any;
+use std::borrow::Cow;
 
 /// A node: 8 bytes, depth-first order, the left child follows its parent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
@@ -10,7 +20,8 @@ use bytemuck::{Pod, Zeroable};
 pub struct KdNode {
     /// Inner node: the split plane's coordinate (bits of an f32). Leaf: first triangle reference.
     pub word: u32,
-    /// Low two bits: split axis, or 3 for a leaf. High 30 bits: index of the right child, or number of triangle references.
+    /// Low two bits: split axis, or 3 for a leaf. High 30 bits: index of the right child, or number of triangle
+    /// references.
     pub link: u32,
 }
 
@@ -21,7 +32,7 @@ pub struct KdTree {
     pub bounds: Aabb,
     /// Depth-first.
     pub nodes: Vec<KdNode>,
-    /// Leaf by leaf; a triangle stands in every leaf that its box overlaps.
+    /// Leaf by leaf; a triangle is in every leaf that its box overlaps.
     pub triangle_refs: Vec<TriangleRef>,
     /// Levels of inner nodes on the longest way from the root to a leaf.
     pub depth: u32,
@@ -30,8 +41,8 @@ pub struct KdTree {
 impl KdTree {
     /// Calls `visit` with every node, its cell and its depth, in the order of the nodes.
     ///
-    /// For trees that are known to be sound (see [`crate::workloads::trace::Structure::validate`]); links that lead nowhere or backwards
-    /// are not followed.
+    /// For trees that are known to be sound (see [`Structure::validate`]); links that lead nowhere or backwards are not
+    /// followed.
     pub fn for_each_cell(&self, mut visit: impl FnMut(KdNode, &Aabb, u32)) {
         let mut waiting = vec![(0, self.bounds, 0)];
         while let Some((index, cell, depth)) = waiting.pop() {
@@ -48,6 +59,63 @@ impl KdTree {
             }
             waiting.push((index + 1, left, depth + 1));
         }
+    }
+}
+
+/// `KdTree` of `kernels/trace/kdtree/search.wgsl`.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+#[allow(missing_docs)]
+pub struct KdTreeUniform {
+    pub bounds_min: Vec3,
+    pub pad0: u32,
+    pub bounds_max: Vec3,
+    pub pad1: u32,
+}
+
+impl Structure for KdTree {
+    fn kind(&self) -> &'static StructureKind {
+        &KIND
+    }
+
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+
+    fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    fn triangle_refs(&self) -> &[TriangleRef] {
+        &self.triangle_refs
+    }
+
+    fn node_bytes(&self) -> usize {
+        size_of_val(self.nodes.as_slice())
+    }
+
+    fn nodes(&self) -> Cow<'_, [u8]> {
+        Cow::Borrowed(bytemuck::cast_slice(&self.nodes))
+    }
+
+    fn uniform(&self) -> Vec<u8> {
+        let Aabb { min: bounds_min, max: bounds_max } = finite(self.bounds);
+        bytemuck::bytes_of(&KdTreeUniform { bounds_min, pad0: 0, bounds_max, pad1: 0 }).to_vec()
+    }
+
+    fn properties(&self, scene: &Scene) -> Properties {
+        let leaves = Leaves::of(self.nodes.iter().filter(|n| n.is_leaf()).map(|n| n.count()));
+        let common = Properties::of_references(&self.triangle_refs, scene);
+        leaves.into_properties(self.nodes.len(), self.depth, CostModel::default().kdtree(self), common)
+    }
+
+    fn thesis_bytes(&self, scene: &Scene) -> u64 {
+        let (nodes, vertices) = (self.nodes.len() as u64, scene.vertices.len() as u64);
+        memory::kdtree_bytes(nodes, self.triangle_refs.len() as u64, vertices)
+    }
+
+    fn check(&self, expected: &Expected) -> Verdict {
+        check::check(self, expected)
     }
 }
 

@@ -1,26 +1,104 @@
-//! kd-tree without a full stack: restart (Foley and Sugerman 2005), pushdown and short stack (Horn et al. 2007). Twin of
-//! `kernels/trace/kdtree/search.wgsl`.
+//! kd-tree without a full stack: restart (Foley and Sugerman 2005), pushdown and short stack (Horn et al. 2007). Twin
+//! of `kernels/trace/kdtree/search.wgsl`.
 //!
 //! A restart resumes by the path taken, not by the distance reached: from afar, many cells have ends that round to the
 //! same distance, and none of them may be skipped or visited endlessly.
 
-use crate::math::{MISS, Ray, T_MAX, ray_box};
+use crate::error::Result;
+use crate::math::{MISS, Ray, ray_box};
+use crate::workloads::trace::algorithm::{Algorithm, Parameter, Parameters, Traversal};
+use crate::workloads::trace::backend::Prepared;
 use crate::workloads::trace::count::Count;
-use crate::workloads::trace::kdtree::{KdNode, KdTree as Tree};
-use crate::workloads::trace::method::KdSearch;
+use crate::workloads::trace::cpu::TwinInput;
+use crate::workloads::trace::kdtree::{BUILDER, KIND, KdNode, KdTree as Tree};
+use crate::workloads::trace::options::{Axis, GROUP, Kind, OptionInfo};
+use crate::workloads::trace::selection::Selection;
 use crate::workloads::trace::traverse::{Best, TraverseIndependent, Triangles};
 
-/// Entries that the twin of the thesis's kernel has room for.
-pub const SMALL: usize = KdSearch::THESIS.stack as usize;
+/// The kd-tree of the thesis.
+pub static KDTREE: Algorithm = Algorithm {
+    name: "kdtree",
+    alias: "",
+    summary: "SAH kd-tree, short stack of four with pushdown and restart",
+    paper: "Shevtsov et al. 2007; Wald and Havran 2006; Horn et al. 2007",
+    builder: &BUILDER,
+    traversal: &SEARCH,
+    options: OPTIONS,
+};
 
-/// See the module. Has room for `MOST` entries of a short stack: clearing a larger one would cost every ray.
+/// From leaf to leaf without a full stack.
+pub static SEARCH: Traversal = Traversal {
+    kernel: "trace/kdtree/search.wgsl",
+    structure: &KIND,
+    parameters,
+    slots: |parameters| match parameters.flag("PRIVATE_STACK") {
+        true => &[("short_stack", "trace/kdtree/short_stack_private.wgsl")],
+        false => &[("short_stack", "trace/kdtree/short_stack_workgroup.wgsl")],
+    },
+    twin: Some(twin),
+    ..Traversal::INDEPENDENT
+};
+
+/// Most entries of a short stack.
+const MAX_SHORT_STACK: u32 = 32;
+
+const OPTIONS: &[OptionInfo] = &[
+    OptionInfo::new(
+        Axis::Traversal,
+        "search",
+        "short-stack",
+        "after a leaf: restart at the root, at the deepest node without a branch above (pushdown), or pop from a \
+                  short stack and push down",
+        Kind::Word(&["restart", "pushdown", "short-stack"]),
+    ),
+    OptionInfo::new(Axis::Traversal, "stack", "4", "entries of the short stack", Kind::Count(1, MAX_SHORT_STACK))
+        .idle_if(has_no_stack),
+    OptionInfo::new(
+        Axis::Traversal,
+        "memory",
+        "workgroup",
+        "where the short stack lies",
+        Kind::Word(&["workgroup", "private"]),
+    )
+    .idle_if(has_no_stack),
+    GROUP,
+];
+
+fn has_no_stack(s: &Selection) -> Option<String> {
+    let search = s.value("search");
+    (search != "short-stack").then(|| format!("search={search} has no short stack"))
+}
+
+/// What a ray does after a leaf without a hit. With a short stack of no entries it restarts at once; with pushdown at
+/// the deepest node above which it never had to branch (Horn et al. 2007), without at the root (Foley and Sugerman
+/// 2005).
+fn parameters(s: &Selection) -> Parameters {
+    let search = s.value("search");
+    let stack = if search == "short-stack" { s.count("stack").unwrap_or_default() } else { 0 };
+    Parameters::of(&[
+        ("SHORT_STACK", Parameter::Word(stack)),
+        ("PUSHDOWN", Parameter::Flag(search != "restart")),
+        ("PRIVATE_STACK", Parameter::Flag(s.value("memory") == "private")),
+    ])
+}
+
+/// A stack of as many entries as the thesis's has room for: clearing a larger one would cost every ray.
+const SMALL: usize = 4;
+
+fn twin(input: TwinInput<'_>) -> Result<Box<dyn Prepared + '_>> {
+    Ok(match input.method.parameters.word("SHORT_STACK") as usize <= SMALL {
+        true => input.with(KdTree::<SMALL>::of(&input)?),
+        false => input.with(KdTree::<{ MAX_SHORT_STACK as usize }>::of(&input)?),
+    })
+}
+
+/// See the module. It has room for `MOST` entries of a short stack.
 pub struct KdTree<'a, const MOST: usize> {
-    /// Records and vertices.
-    pub triangles: Triangles<'a>,
-    /// The tree.
-    pub tree: &'a Tree,
-    /// What happens after a leaf.
-    pub search: KdSearch,
+    triangles: Triangles<'a>,
+    tree: &'a Tree,
+    /// Entries of the short stack.
+    short_stack: usize,
+    pushdown: bool,
 }
 
 #[derive(Clone, Copy, Default)]
@@ -48,8 +126,8 @@ struct Descent<const MOST: usize> {
     /// Entries that are still in the ring.
     held: usize,
     stack: [Entry; MOST],
-    /// The trail (after Laine 2010): one bit for each branch on the way from `restart_node` to `node`, the deepest in the
-    /// lowest bit; set where the ray is on the far side, so that both sides are done when it comes back.
+    /// The trail (after Laine 2010): one bit for each branch on the way from `restart_node` to `node`, the deepest in
+    /// the lowest bit; set where the ray is on the far side, so that both sides are done when it comes back.
     trail: u64,
     /// Bits of the trail.
     branches: u32,
@@ -60,7 +138,7 @@ struct Descent<const MOST: usize> {
 }
 
 impl<const MOST: usize> Descent<MOST> {
-    /// Go one inner node down.
+    /// Goes one inner node down.
     #[inline]
     fn descend(&mut self, ray: &Ray, node: KdNode) {
         let axis = node.axis();
@@ -85,7 +163,7 @@ impl<const MOST: usize> Descent<MOST> {
         }
     }
 
-    /// Both children are wanted: go to the near one, or where a restart comes back, to the one that the trail says.
+    /// The ray overlaps both children: goes to the near one, or after a restart to the one that the trail says.
     #[inline]
     fn branch(&mut self, near: u32, far: u32, t_from: f32, t_to: f32) {
         self.pushdown = false;
@@ -111,8 +189,8 @@ impl<const MOST: usize> Descent<MOST> {
         self.t_max = self.t_max.min(t_to);
     }
 
-    /// Leave a leaf: go to the far side of the deepest branch that is on its near side, by a pop or by a restart. False
-    /// where there is none.
+    /// Leaves a leaf: goes to the far side of the deepest branch that is on its near side, by a pop or by a restart.
+    /// False where there is none.
     #[inline]
     fn leave_leaf<C: Count>(&mut self, count: &mut C) -> bool {
         let done = self.trail.trailing_ones();
@@ -143,7 +221,13 @@ impl<const MOST: usize> Descent<MOST> {
     }
 }
 
-impl<const MOST: usize> KdTree<'_, MOST> {
+impl<'a, const MOST: usize> KdTree<'a, MOST> {
+    fn of(input: &TwinInput<'a>) -> Result<Self> {
+        let parameters = input.method.parameters;
+        let (short_stack, pushdown) = (parameters.word("SHORT_STACK") as usize, parameters.flag("PUSHDOWN"));
+        Ok(KdTree { triangles: input.triangles(), tree: input.structure()?, short_stack, pushdown })
+    }
+
     #[inline]
     fn start_descent(&self, ray: &Ray, limit: f32) -> Option<Descent<MOST>> {
         let (near, far) = ray_box(ray, self.tree.bounds.min.into(), self.tree.bounds.max.into());
@@ -156,8 +240,8 @@ impl<const MOST: usize> KdTree<'_, MOST> {
             t_begin: t_min,
             t_end,
             restart_node: 0,
-            pushdown: self.search.pushdown,
-            ring: (self.search.stack as usize).min(MOST),
+            pushdown: self.pushdown,
+            ring: self.short_stack.min(MOST),
             top: 0,
             held: 0,
             stack: [Entry::default(); MOST],
@@ -170,39 +254,20 @@ impl<const MOST: usize> KdTree<'_, MOST> {
 }
 
 impl<const MOST: usize> TraverseIndependent for KdTree<'_, MOST> {
-    fn nearest_hit<C: Count>(&self, ray: &Ray, count: &mut C) -> u32 {
-        let mut best = Best::NONE;
-        let Some(mut d) = self.start_descent(ray, T_MAX) else {
+    fn traverse<const ANY: bool, C: Count>(&self, ray: &Ray, limit: f32, count: &mut C) -> u32 {
+        let Some(mut d) = self.start_descent(ray, limit) else {
             return MISS;
         };
+        let mut best = Best::before(limit);
         loop {
             let node = self.tree.nodes[d.node as usize];
             if node.is_leaf() {
                 count.leaf();
-                self.triangles.test_triangles(ray, node.first(), node.count(), &mut best, count);
-                if d.ends_before(best.t) || !d.leave_leaf(count) {
+                if self.triangles.test::<ANY, C>(ray, node.first(), node.count(), &mut best, count) {
                     return best.triangle_ref;
                 }
-            } else {
-                count.inner();
-                d.descend(ray, node);
-            }
-        }
-    }
-
-    fn any_hit<C: Count>(&self, ray: &Ray, limit: f32, count: &mut C) -> bool {
-        let Some(mut d) = self.start_descent(ray, limit) else {
-            return false;
-        };
-        loop {
-            let node = self.tree.nodes[d.node as usize];
-            if node.is_leaf() {
-                count.leaf();
-                if self.triangles.any_triangle_occludes(ray, node.first(), node.count(), limit, count) {
-                    return true;
-                }
-                if !d.leave_leaf(count) {
-                    return false;
+                if d.ends_before(best.t) || !d.leave_leaf(count) {
+                    return best.triangle_ref;
                 }
             } else {
                 count.inner();

@@ -1,5 +1,4 @@
-//! Files that are small or plain, and would take long or much: each is read or refused at once, within the same limits of
-//! time and memory as the variants.
+//! Small files that could take much time or memory: each is read or refused within the same limits as the variants.
 
 use super::super::gltf::glb;
 use super::super::inventor::{HEADER, POINTS};
@@ -9,18 +8,18 @@ use base64::Engine;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// Loads such a file; `words` are in what it is refused with, or empty if it is read.
+/// Loads such a file; the error must contain `words`, or the file must be read if they are empty.
 fn load(name: &str, bytes: &[u8], words: &str) {
     let files = Files::new(&[]);
     files.write(name, bytes);
     let watchdog = Watchdog::new();
-    let what = format!("{name}: {words}");
-    watchdog.begin(&what);
-    match guard::held(&what, bytes.len(), || files.load(name)) {
-        Ok(_) => assert!(words.is_empty(), "{what}: read, but should be refused"),
+    let case_name = format!("{name}: {words}");
+    watchdog.begin(&case_name);
+    match guard::within_limits(&case_name, bytes.len(), || files.load(name)) {
+        Ok(_) => assert!(words.is_empty(), "{case_name}: read, but should be refused"),
         Err(error) => {
             let error = error.to_string();
-            assert!(!words.is_empty() && error.contains(words) && !error.contains('\n'), "{what}: {error}");
+            assert!(!words.is_empty() && error.contains(words) && !error.contains('\n'), "{case_name}: {error}");
         }
     }
 }
@@ -31,15 +30,18 @@ fn inventor() {
     let doublings: String = (1..70).map(doubled).collect();
     let around = "0,0,0,-1,".repeat(333);
     for (text, words) in [
-        // Nothing, any number of times
+        // An empty array with many copies
         ("Array { numElements1 0 numElements2 1e15 Cube {} } Cube {}", ""),
-        ("Array { numElements2 0 numElements3 1e15 Cube {} } Cube {}", "copies of copies never end"),
+        ("Array { numElements2 0 numElements3 1e15 Cube {} } Cube {}", "nested copies repeat too many values"),
         ("Array { numElements1 -1e300 origin CENTER Cube {} } Cube {}", ""),
         ("POINTS QuadMesh { verticesPerColumn 1e18 verticesPerRow 0 } Cube {}", ""),
-        // Costs of costs, 2^70 of them
-        (&format!("Switch {{ DEF n0 VertexProperty {{ }} {doublings} }} USE n69"), "copies of copies never end"),
+        // Nested nodes with a cost of 2^70
+        (
+            &format!("Switch {{ DEF n0 VertexProperty {{ }} {doublings} }} USE n69"),
+            "nested copies repeat too many values",
+        ),
         ("File { name \"two\nlines\" }", "no such file"),
-        // Every corner meets all faces, in many copies
+        // All faces meet at every corner, in many copies.
         (
             &format!(
                 "ShapeHints {{ creaseAngle 1 }} POINTS DEF a IndexedFaceSet {{ coordIndex [ {around} ] }} {}",
@@ -61,12 +63,12 @@ fn mgf() {
     let comment = format!("xf -a 100000\n#{}\nxf\n", "-".repeat(50_000));
     let passed_over = format!("xf -a 100000\nxf -a 0\n{}xf\nxf\n", "o thing\n".repeat(8000));
     for (text, words) in [
-        (comment.as_str(), "arrays of arrays never end"),
-        (&passed_over, "arrays of arrays never end"),
+        (comment.as_str(), "nested arrays repeat too many entities"),
+        (&passed_over, "nested arrays repeat too many entities"),
         (nested.as_str(), "more than 64 MiB"),
         (&ones, "there is no triangle"),
         ("xf -a 100000\nxf -a 100000 -a 0\nxf\nxf\n", "there is no triangle"),
-        (&colours, "arrays of arrays never end"),
+        (&colours, "nested arrays repeat too many entities"),
     ] {
         load("main.mgf", text.as_bytes(), words);
     }
@@ -80,10 +82,10 @@ fn obj() {
     let mut materials = CORNERS.to_owned();
     (0..400_000).for_each(|i| writeln!(materials, "usemtl {i}").unwrap());
     for (text, words) in [
-        // Three positions have all vertices: looked for one after another, they would take minutes
+        // All vertices are at three positions: a linear search would take minutes.
         (format!("{CORNERS}s off\n{}", "f 1 2 3\n".repeat(150_000)), ""),
         (normals, ""),
-        // The file is its own library
+        // The file names itself as its library.
         (format!("{CORNERS}f 1 2 3\n{}", "mtllib main.obj\n".repeat(30_000)), ""),
         (format!("{CORNERS}s off\n{}", "f 1 2 3\n".repeat(1_000_000)), "MiB of memory"),
         (format!("{CORNERS}f {}\n", "1 2 3 ".repeat(2_000_000)), "MiB of memory"),
@@ -97,7 +99,7 @@ fn obj() {
 fn ply() {
     let mut header = "ply\nformat ascii 1.0\nelement vertex 3\n".to_owned();
     (0..2000).for_each(|i| writeln!(header, "property char p{i}").unwrap());
-    load("main.ply", header.as_bytes(), ":1004: more than 1000 properties");
+    load("main.ply", header.as_bytes(), ":1004: there are more than 1000 properties");
     let mut corners = b"ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty char x\nproperty char y\n\
         property char z\nelement face 1\nproperty list uint uchar vertex_indices\nend_header\n"
         .to_vec();
@@ -107,7 +109,7 @@ fn ply() {
     load("main.ply", &corners, "MiB of memory");
 }
 
-/// Zeros that need no bytes, but for one; one mesh, one node.
+/// A document with sparse accessors over zeros, which need few bytes; one mesh, one node.
 fn zeros() -> (Value, Vec<u8>) {
     let corners = [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
     let mut bytes: Vec<u8> = corners.iter().flat_map(|x| x.to_le_bytes()).collect();
@@ -137,22 +139,22 @@ fn gltf() {
     let mut copies = document.clone();
     copies["nodes"] = vec![json!({ "mesh": 0 }); 2000].into();
     load("main.glb", &glb(&copies, &bytes), "MiB of memory");
-    // Objects of three bytes, of which each takes hundreds
+    // Objects of three bytes, each of which takes hundreds of bytes in memory
     let mut empty = document.clone();
     empty["nodes"] = vec![json!({}); 400_000].into();
     load("main.gltf", empty.to_string().as_bytes(), "objects need");
-    // The file itself, as the buffer of many
+    // Many buffers that name the file itself
     let mut again = document.clone();
     let data = base64::engine::general_purpose::STANDARD.encode(&bytes);
     let mut buffers = vec![json!({ "byteLength": 40, "uri": format!("data:application/octet-stream;base64,{data}") })];
     buffers.extend(vec![json!({ "byteLength": 1, "uri": "./main.gltf" }); 10_000]);
     again["buffers"] = buffers.into();
     load("main.gltf", again.to_string().as_bytes(), "");
-    // A child of two bytes, any number of times
+    // A child of two bytes, listed many times
     let mut children = document.clone();
     children["nodes"] = json!([{ "children": vec![1; 2_000_000] }, {}]);
     load("main.glb", &glb(&children, &bytes), "two parents");
-    // Many nodes that show many primitives of nothing
+    // Many nodes with many empty primitives
     let mut nothing = document.clone();
     nothing["accessors"] = json!([{ "componentType": 5126, "count": 0, "type": "VEC3", "bufferView": 0, "min": [0, 0, 0],
         "max": [0, 0, 0] }]);
@@ -161,7 +163,7 @@ fn gltf() {
     load("main.glb", &glb(&nothing, &bytes), "MiB of memory");
 }
 
-/// Many flat triangles whose indices are short: the most that an ordinary file takes of memory for its size.
+/// Many flat triangles with short indices: the largest memory that an ordinary file takes in relation to its size.
 #[test]
 fn a_large_glb_without_normals_is_read() {
     let (shown, points) = (25, 20_000u16);

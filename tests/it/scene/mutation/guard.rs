@@ -1,32 +1,33 @@
-//! What a variant may take: memory, and no more than a moment of time.
+//! Limits of memory and time for a variant.
 
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-/// Bytes that reading may take beside sixteen times the file's.
+/// Memory in bytes that reading may take in addition to sixteen times the file's size.
 const BASE: u64 = 64 << 20;
 
-/// Processor time that reading may take.
-const MOMENT: Duration = Duration::from_secs(2);
+/// The largest processor time of reading.
+const TIME_LIMIT: Duration = Duration::from_secs(2);
 
-/// What counts as a hang by the clock, however busy the machine is.
+/// Wall time after which reading counts as a hang, even on a busy machine.
 const HANG: Duration = Duration::from_secs(20);
 
-/// Fails if so many bytes of files may not lead to such a peak of memory (of this thread: readers allocate nowhere else).
-fn hold_memory(what: &str, peak: u64, file_bytes: usize) {
+/// Asserts that a peak of memory is within the limit for files of this size. The peak is that of the calling thread, on
+/// which readers allocate.
+fn check_memory(name: &str, peak: u64, file_bytes: usize) {
     let limit = 16 * file_bytes as u64 + BASE;
-    assert!(peak <= limit, "{what}: {peak} bytes allocated at once, {limit} are allowed for a file of {file_bytes}");
+    assert!(peak <= limit, "{name}: {peak} bytes allocated at once, {limit} are allowed for a file of {file_bytes}");
 }
 
-/// Runs something; returns the processor time that this thread spent on it.
+/// Returns the processor time of this thread for `run`.
 fn processor_time(run: impl FnOnce()) -> Duration {
     #[cfg(unix)]
     let now = || {
         let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
         Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
     };
-    // Elsewhere the watchdog alone watches
+    // On other systems only the watchdog limits the time.
     #[cfg(not(unix))]
     let now = || Duration::ZERO;
     let begun = now();
@@ -34,28 +35,28 @@ fn processor_time(run: impl FnOnce()) -> Duration {
     now() - begun
 }
 
-/// Fails if reading took longer than it may.
-fn hold_time(what: &str, time: Duration) {
-    assert!(time <= MOMENT, "{what}: {time:?} of processor time, {MOMENT:?} are allowed");
+/// Asserts that the processor time is within the limit.
+fn check_time(name: &str, time: Duration) {
+    assert!(time <= TIME_LIMIT, "{name}: {time:?} of processor time, {TIME_LIMIT:?} are allowed");
 }
 
-/// Reads files of so many bytes, and fails if that takes more memory or more time than it may.
-pub fn held<T>(what: &str, file_bytes: usize, read: impl FnOnce() -> T) -> T {
+/// Runs a reader of files of this size, and asserts that it stays within the limits of memory and time.
+pub fn within_limits<T>(name: &str, file_bytes: usize, read: impl FnOnce() -> T) -> T {
     let (mut result, mut peak) = (None, 0);
     let time = processor_time(|| peak = allocation_counter::measure(|| result = Some(read())).bytes_max);
-    hold_time(what, time);
-    hold_memory(what, peak, file_bytes);
-    result.expect("measured things run")
+    check_time(name, time);
+    check_memory(name, peak, file_bytes);
+    result.expect("the closure was run")
 }
 
-/// Ends the whole test program if one piece of work takes for ever: a thread that hangs cannot be stopped otherwise.
+/// Ends the test program if a step hangs: a hanging thread cannot be stopped otherwise.
 pub struct Watchdog {
     running: Arc<Mutex<(Instant, String)>>,
     done: Arc<AtomicBool>,
 }
 
 impl Watchdog {
-    /// Begins to watch.
+    /// Starts the thread that watches.
     pub fn new() -> Watchdog {
         let running = Arc::new(Mutex::new((Instant::now(), String::new())));
         let done = Arc::new(AtomicBool::new(false));
@@ -63,9 +64,9 @@ impl Watchdog {
         std::thread::spawn(move || {
             while !ended.load(Relaxed) {
                 std::thread::sleep(Duration::from_millis(200));
-                let (since, what) = watched.lock().unwrap().clone();
+                let (since, name) = watched.lock().unwrap().clone();
                 if is_hang(since.elapsed()) && !ended.load(Relaxed) {
-                    eprintln!("{what}: hangs, more than {} s", HANG.as_secs());
+                    eprintln!("{name}: hangs, more than {} s", HANG.as_secs());
                     std::process::exit(101);
                 }
             }
@@ -73,9 +74,9 @@ impl Watchdog {
         Watchdog { running, done }
     }
 
-    /// Something else begins; `what` is what the user is told if it hangs.
-    pub fn begin(&self, what: &str) {
-        *self.running.lock().unwrap() = (Instant::now(), what.to_owned());
+    /// Starts a new step; `name` is its name for the message if it hangs.
+    pub fn begin(&self, name: &str) {
+        *self.running.lock().unwrap() = (Instant::now(), name.to_owned());
     }
 }
 
@@ -90,13 +91,13 @@ impl Drop for Watchdog {
 }
 
 #[test]
-fn the_limits_can_be_overstepped() {
-    hold_memory("as allowed", 16 * 100 + (64 << 20), 100);
-    let caught = std::panic::catch_unwind(|| hold_memory("too much", 16 * 100 + (64 << 20) + 1, 100));
+fn exceeding_a_limit_is_detected() {
+    check_memory("as allowed", 16 * 100 + (64 << 20), 100);
+    let caught = std::panic::catch_unwind(|| check_memory("too much", 16 * 100 + (64 << 20) + 1, 100));
     assert!(caught.is_err());
-    hold_time("as allowed", MOMENT);
-    assert!(std::panic::catch_unwind(|| hold_time("too long", MOMENT + Duration::from_nanos(1))).is_err());
-    // Waiting is not work; work is
+    check_time("as allowed", TIME_LIMIT);
+    assert!(std::panic::catch_unwind(|| check_time("too long", TIME_LIMIT + Duration::from_nanos(1))).is_err());
+    // Waiting takes no processor time; work does.
     assert!(processor_time(|| std::thread::sleep(Duration::from_millis(100))) < Duration::from_millis(50));
     let work = || {
         (0..10_000_000_u64).for_each(|i| {
@@ -105,7 +106,7 @@ fn the_limits_can_be_overstepped() {
     };
     assert!(processor_time(work) > Duration::ZERO || cfg!(not(unix)));
     assert!(is_hang(Duration::from_secs(21)) && !is_hang(Duration::from_secs(19)));
-    // What is counted is the peak, freed or not.
+    // The peak is counted, even if the memory was freed.
     let counted = allocation_counter::measure(|| drop(std::hint::black_box(vec![1u8; 1 << 20])));
     assert!(counted.bytes_max >= 1 << 20 && counted.bytes_current == 0, "{counted:?}");
 }

@@ -1,6 +1,6 @@
-//! How files are broken: texts by lines, words and numbers, others by bytes and by words of four.
+//! Mutations of files: of lines, words and numbers in texts, of bytes and 32-bit words in binary files.
 
-/// Numbers that a reader should not trust.
+/// Extreme and invalid numbers.
 const NUMBERS: [&str; 14] = [
     "0",
     "-1",
@@ -18,11 +18,10 @@ const NUMBERS: [&str; 14] = [
     ".",
 ];
 
-/// Numbers from a small generator of our own: the same on every machine.
+/// A pseudorandom generator with the same sequence on every machine.
 pub struct Random(pub u64);
 
 impl Random {
-    /// 64 bits.
     pub fn next(&mut self) -> u64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
@@ -30,13 +29,13 @@ impl Random {
         self.0
     }
 
-    /// A number below `n`, or 0.
+    /// A number below `n`; 0 if `n` is 0.
     pub fn below(&mut self, n: usize) -> usize {
         (self.next() % n.max(1) as u64) as usize
     }
 }
 
-/// Where words (or lines) begin and end.
+/// The ranges of words or lines.
 fn pieces(bytes: &[u8], ends: fn(u8) -> bool) -> Vec<(usize, usize)> {
     let mut found = Vec::new();
     let mut start = None;
@@ -53,14 +52,14 @@ fn pieces(bytes: &[u8], ends: fn(u8) -> bool) -> Vec<(usize, usize)> {
     found
 }
 
-/// Breaks a text in one to four places.
+/// Mutates a text at one to four positions.
 pub fn text(original: &[u8], random: &mut Random) -> Vec<u8> {
     let mut bytes = original.to_vec();
     for _ in 0..1 + random.below(4) {
         if bytes.is_empty() {
             return bytes;
         }
-        // Lines, words, or numbers wherever they stand
+        // Lines, words, or digits at any position
         let ends: fn(u8) -> bool = match random.below(3) {
             0 => |b| b == b'\n',
             1 => |b| b <= b' ',
@@ -93,7 +92,7 @@ pub fn text(original: &[u8], random: &mut Random) -> Vec<u8> {
     bytes
 }
 
-/// Values that lengths, indices and floats should not have.
+/// Extreme values of lengths, indices and floats.
 const WORDS: [u32; 12] = [
     0,
     1,
@@ -109,7 +108,7 @@ const WORDS: [u32; 12] = [
     0x0001_0000,
 ];
 
-/// Breaks a binary file in one to four places; every second time among its first bytes, where lengths stand.
+/// Mutates a binary file at one to four positions, half of them among its first bytes, which hold lengths.
 pub fn bytes(original: &[u8], random: &mut Random) -> Vec<u8> {
     let mut bytes = original.to_vec();
     for _ in 0..1 + random.below(4) {
@@ -126,7 +125,7 @@ pub fn bytes(original: &[u8], random: &mut Random) -> Vec<u8> {
                 let copy = bytes[at..end].to_vec();
                 bytes.splice(at..at, copy);
             }
-            // A digit for a digit: lengths of texts stay what they are
+            // Digits are replaced by digits, so that lengths of texts do not change.
             5 => {
                 let digit = (at..bytes.len()).find(|&i| bytes[i].is_ascii_digit()).unwrap_or(at);
                 bytes[digit] = b'0' + random.below(10) as u8;

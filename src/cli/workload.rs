@@ -1,0 +1,348 @@
+//! `rtbench WORKLOAD`: the main job. The subcommand and its flags are generated from the workload's description.
+
+use super::device::{self, DeviceArguments};
+use super::interrupt;
+use super::library::LibraryArguments;
+use super::output;
+use super::progress::Progress;
+use crate::error::{Error, Result};
+use crate::harness::previous::PreviousRun;
+use crate::harness::run::{self, Job};
+use crate::harness::workload::{Info, Library, Workload};
+use crate::harness::{Plan, Request, environment, summary};
+use crate::record::row::{Row, Status};
+use crate::record::{files, journal};
+use crate::workloads;
+use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::atomic::Ordering;
+
+/// Flags that all workloads have.
+#[derive(Args, Clone, Debug)]
+struct CommonArguments {
+    /// What the other flags begin with: the name of a preset, or a TOML file like those in presets/
+    #[arg(long, value_name = "NAME|FILE")]
+    preset: Option<String>,
+    #[command(flatten)]
+    library: LibraryArguments,
+    /// Thin each case evenly to this many frames
+    #[arg(long, value_name = "N")]
+    frames: Option<usize>,
+    /// Timed passes over all frames; a frame's time is the median over them
+    #[arg(long, value_name = "N")]
+    passes: Option<usize>,
+    /// Untimed frames before each pass
+    #[arg(long, value_name = "FRAMES")]
+    warmup: Option<usize>,
+    /// Folder for the results, new or empty [default: results/TIME-DEVICE]
+    #[arg(long, value_name = "FOLDER")]
+    out: Option<PathBuf>,
+    /// Resume the run in this folder, by the flags it began with: rows that it has are kept
+    #[arg(long, value_name = "FOLDER")]
+    resume: Option<PathBuf>,
+    /// Exit with code 2 if a case was skipped
+    #[arg(long)]
+    strict: bool,
+    /// No progress, no table: only errors
+    #[arg(long, short)]
+    quiet: bool,
+    #[command(flatten)]
+    device: DeviceArguments,
+}
+
+/// Flags that a resumed run may have besides `--resume`; all others belong to the beginning of a run.
+const ALSO_RESUMED: [&str; 3] = ["resume", "strict", "quiet"];
+
+/// Flags of `rtbench plan WORKLOAD` besides the axes.
+const PLANNED: [&str; 6] = ["preset", "scenes_dir", "scene_time", "frames", "passes", "warmup"];
+
+/// What was given on a command line.
+struct Given {
+    workload: &'static dyn Workload,
+    /// Values by axis.
+    values: std::collections::BTreeMap<String, Vec<String>>,
+    common: CommonArguments,
+}
+
+/// The subcommands of all workloads.
+pub fn commands() -> Vec<Command> {
+    workloads::ALL.iter().map(|workload| command(workload.info())).collect()
+}
+
+/// The subcommand of a workload.
+fn command(info: &'static Info) -> Command {
+    let mut command = CommonArguments::augment_args(with_axes(Command::new(info.name), info))
+        .about(info.summary)
+        .long_about(format!("{}\n\n{}", info.summary, info.description))
+        .after_help(info.examples);
+    // A resumed run has the flags that it began with
+    let others: Vec<_> = command.get_arguments().map(|argument| argument.get_id().clone()).collect();
+    for id in others.iter().filter(|id| !ALSO_RESUMED.contains(&id.as_str())) {
+        let id = id.clone();
+        command = command.mut_arg("resume", |resume| resume.conflicts_with(id));
+    }
+    let presets: Vec<&str> = info.presets.iter().map(|(name, _)| *name).collect();
+    let help = format!(
+        "What the other flags begin with: {}, or a TOML file like presets/{}/{}.toml [default: {}]",
+        presets.join(", "),
+        info.name,
+        presets.first().unwrap_or(&""),
+        presets.first().unwrap_or(&"")
+    );
+    command.mut_arg("preset", |preset| preset.help(help))
+}
+
+/// Adds one flag per axis.
+fn with_axes(mut command: Command, info: &'static Info) -> Command {
+    for axis in info.axes.iter().filter(|axis| axis.is_flag) {
+        let flag = axis.name.replace('_', "-");
+        command = command
+            .arg(Arg::new(axis.name).long(flag).value_name(axis.value_name).help(axis.help).action(ArgAction::Append));
+    }
+    command
+}
+
+/// `rtbench plan`, with a subcommand per workload.
+pub fn plan_command() -> Command {
+    let mut plan = Command::new("plan")
+        .about("List the cases that a workload would measure")
+        .long_about(
+            "List the cases that a workload would measure\n\nNeeds no device. Of scenes only names and camera files are \
+             read, so that a broken scene file shows when it is measured.",
+        )
+        .subcommand_required(true)
+        .arg_required_else_help(true);
+    for workload in workloads::ALL {
+        let info = workload.info();
+        let mut command = CommonArguments::augment_args(with_axes(Command::new(info.name), info)).about(info.summary);
+        let ids: Vec<_> = command.get_arguments().map(|argument| argument.get_id().clone()).collect();
+        let hidden = |id: &str| !PLANNED.contains(&id) && !info.axes.iter().any(|axis| axis.name == id);
+        for id in ids.into_iter().filter(|id| hidden(id.as_str())) {
+            command = command.mut_arg(id, |argument| argument.hide(true));
+        }
+        plan = plan.subcommand(command);
+    }
+    plan
+}
+
+/// Runs the subcommand if it is a workload's, or `plan`; `None` otherwise.
+///
+/// # Errors
+/// What could not run; wrong answers are the exit code 1.
+pub fn run(matches: &ArgMatches) -> Option<Result<ExitCode>> {
+    let (name, matches) = matches.subcommand()?;
+    if name == "plan" {
+        let (name, matches) = matches.subcommand()?;
+        return Some(Given::read(workloads::find(name)?, matches).and_then(|given| given.list()));
+    }
+    Some(Given::read(workloads::find(name)?, matches).and_then(Given::run))
+}
+
+impl Given {
+    fn read(workload: &'static dyn Workload, matches: &ArgMatches) -> Result<Given> {
+        let common = CommonArguments::from_arg_matches(matches)
+            .map_err(|error| Error::argument(workload.info().name, error.to_string(), "see --help"))?;
+        let axes = workload.info().axes.iter().filter(|axis| axis.is_flag);
+        let values = axes.filter_map(|axis| {
+            let given = matches.get_many::<String>(axis.name)?;
+            Some((axis.name.to_owned(), given.cloned().collect()))
+        });
+        Ok(Given { values: values.collect(), workload, common })
+    }
+
+    /// The command line that a recorded run began with; `None` if this program does not know it.
+    fn parse(recorded: &[String]) -> Option<Given> {
+        let matches = super::cli().try_get_matches_from(recorded).ok()?;
+        let (name, matches) = matches.subcommand()?;
+        Given::read(workloads::find(name)?, matches).ok()
+    }
+
+    fn run(self) -> Result<ExitCode> {
+        let Some(run) = &self.common.resume else { return self.measure(PreviousRun::default()) };
+        let folder = journal::folder_of(run);
+        let previous = PreviousRun::read(&folder)?;
+        if previous.is_complete() {
+            if !self.common.quiet {
+                output::note(&format!("nothing is left to measure in {}", folder.display()));
+            }
+            let rows = previous.journal().map_or(&[][..], |journal| &journal.rows);
+            return Ok(self.conclude(rows));
+        }
+        let recorded = previous.provenance().map(|provenance| &provenance.arguments[..]).unwrap_or_default();
+        match Given::parse(recorded).filter(|began| began.workload.info().name == self.workload.info().name) {
+            Some(mut began) => {
+                began.common.quiet |= self.common.quiet;
+                began.common.strict |= self.common.strict;
+                began.common.out = Some(folder);
+                began.measure(previous).map_err(from_elsewhere)
+            }
+            None => {
+                let problem =
+                    format!("it began with a command that this workload does not know: {}", recorded.join(" "));
+                Err(Error::file(&folder.join(journal::FILE_NAME), Some(1), problem, "begin a new run"))
+            }
+        }
+    }
+
+    fn plan(&self) -> Result<Plan> {
+        let common = &self.common;
+        let subject = self.workload.info().axes.first().map_or("", |axis| axis.name);
+        for value in self.values.get(subject).into_iter().flatten() {
+            common.library.note_where_time_means_nothing(value);
+        }
+        let plan = Plan::new(
+            self.workload,
+            &Request {
+                preset: common.preset.clone(),
+                values: self.values.clone(),
+                frames: common.frames,
+                passes: common.passes,
+                warmup: common.warmup,
+                threads: Some(common.device.threads),
+                library: Library { scenes_folder: common.library.folder(), scene_time: common.library.time() },
+            },
+        )?;
+        for absent in &plan.absent {
+            output::note(&format!("left out: {absent}"));
+        }
+        Ok(plan)
+    }
+
+    /// Prints the plan.
+    fn list(&self) -> Result<ExitCode> {
+        let plan = self.plan()?;
+        let axes: Vec<&str> = self.workload.info().axes.iter().map(|axis| axis.name).collect();
+        let mut text = format!("{}\n", axes.join(","));
+        for case in &plan.cases {
+            let cells = axes.iter().map(|axis| match case.axis(axis) {
+                cell if cell.contains(',') => format!("\"{cell}\""),
+                cell => cell.to_owned(),
+            });
+            text += &format!("{}\n", cells.collect::<Vec<_>>().join(","));
+        }
+        output::print(&text)?;
+        let settings = plan.settings;
+        output::note(&format!(
+            "{} cases of preset {}, {} passes after {} frames of warm-up each",
+            plan.cases.len(),
+            plan.preset,
+            settings.passes,
+            settings.warmup_frames
+        ));
+        Ok(ExitCode::SUCCESS)
+    }
+
+    /// Measures what is planned and not there yet.
+    fn measure(self, previous: PreviousRun) -> Result<ExitCode> {
+        let common = &self.common;
+        let plan = self.plan()?;
+        common.device.check()?;
+        if let (Some(out), None) = (&common.out, previous.provenance()) {
+            files::create_run_folder(out)?;
+        }
+        let device = common.device.open()?;
+        if !common.quiet {
+            device::announce(&device);
+        }
+        let out = match &common.out {
+            Some(out) => out.clone(),
+            None => default_folder(&device.device.info().name),
+        };
+        let mut progress = Progress::new(self.workload, plan.cases.len(), plan.work(), common.quiet);
+        let print_line = progress.line_printer();
+        let stop = interrupt::flag(move || print_line("stopping after this frame; Ctrl-C again ends at once"))?;
+        let interrupted = || stop.load(Ordering::Relaxed);
+        if previous.done() > 0 && !common.quiet {
+            output::note(&format!("{} of {} rows are there already", previous.done(), plan.cases.len()));
+        }
+        let outcome = run::run(Job {
+            workload: self.workload,
+            plan: &plan,
+            out: &out,
+            previous,
+            arguments: std::env::args_os().map(|a| a.to_string_lossy().into_owned()).collect(),
+            devices: vec![device],
+            open: &|_| common.device.open(),
+            interrupted: &interrupted,
+            watch: &mut |event| progress.event(event),
+        });
+        progress.end();
+        let outcome = outcome.inspect_err(|error| tell_where(self.workload, &out, error))?;
+        if !common.quiet {
+            output::print(&summary::terminal(self.workload, &outcome.journal))?;
+            output::print(&format!("results: {}\n", out.display()))?;
+        }
+        Ok(self.conclude(&outcome.journal.rows))
+    }
+
+    /// The exit code: 1 if an answer was wrong, 2 if a case broke or nothing could be measured, with `--strict` also if
+    /// one was skipped. What has no result is said.
+    fn conclude(&self, rows: &[Row]) -> ExitCode {
+        let count = |status: Status| rows.iter().filter(|row| row.status == status).count();
+        let [wrong, failed, skipped] = [Status::Wrong, Status::Failed, Status::Skipped].map(count);
+        let first = |status: Status| {
+            let row = rows.iter().find(|row| row.status == status);
+            row.map_or(String::new(), |row| format!("{}: {}", summary::label(self.workload, row), row.message))
+        };
+        if skipped > 0 && !self.common.quiet {
+            let text = format!("{skipped} of {} cases were skipped; the first: {}", rows.len(), first(Status::Skipped));
+            output::note(&text);
+        }
+        if wrong + failed > 0 {
+            let what = match (wrong, failed) {
+                (_, 0) => "disagreed with the reference".to_owned(),
+                (0, _) => "could not run".to_owned(),
+                _ => format!("have no result: {wrong} disagreed with the reference, {failed} could not run"),
+            };
+            let first = first(if wrong > 0 { Status::Wrong } else { Status::Failed });
+            output::complain(&format!("{} of {} cases {what}; the first: {first}", wrong + failed, rows.len()));
+            return ExitCode::from(if wrong > 0 { 1 } else { 2 });
+        }
+        if count(Status::Ok) == 0 {
+            output::complain(&format!("nothing could be measured: all {} cases were skipped", rows.len()));
+            return ExitCode::from(2);
+        }
+        if skipped > 0 && self.common.strict {
+            output::complain(&format!("--strict: {skipped} of {} cases were skipped", rows.len()));
+            return ExitCode::from(2);
+        }
+        ExitCode::SUCCESS
+    }
+}
+
+/// Of a run that is resumed: what is not found may be so because relative names mean another file here. The journal
+/// does not tell in which folder the run was begun.
+fn from_elsewhere(error: Error) -> Error {
+    match error {
+        Error::Input(mut input) if is_absent_here(Path::new(&input.place)) => {
+            let separator = if input.hint.is_empty() { "" } else { "; " };
+            input.hint += &format!("{separator}a run is resumed from the folder in which it was begun");
+            Error::Input(input)
+        }
+        other => other,
+    }
+}
+
+/// True for what may be a file's name, seen from this folder, without the file.
+fn is_absent_here(place: &Path) -> bool {
+    place.is_relative() && !place.exists() && !place.to_string_lossy().starts_with("--")
+}
+
+/// Tells where the rows are that were measured before a run broke off.
+fn tell_where(workload: &dyn Workload, out: &Path, error: &Error) {
+    if out.join(journal::FILE_NAME).is_file() {
+        let out = out.display();
+        let rest = match error {
+            // An input error must be fixed first; resuming may still be refused.
+            Error::Input(_) => String::new(),
+            _ => format!("; for the rest: rtbench {} --resume {out}", workload.info().name),
+        };
+        output::note(&format!("what was measured is in {out}{rest}"));
+    }
+}
+
+/// `results/TIME-DEVICE`.
+fn default_folder(device: &str) -> PathBuf {
+    Path::new("results").join(format!("{}-{}", environment::now_for_file_name(), files::slug(device)))
+}

@@ -1,0 +1,226 @@
+//! Runs frames: timestamps at the begin and the end of every stage, one submission in advance of the device, nothing
+//! read back in between.
+
+use super::binding::Pipeline;
+use super::buffers::Buffer;
+use super::device::VulkanDevice;
+use super::pipeline::Bindings;
+use crate::device::frame::PassTimer;
+use crate::device::{Frame, FrameTime, Interrupted, Pass, Submissions};
+use crate::error::{Error, Result};
+use std::collections::VecDeque;
+use std::time::{Duration, Instant};
+
+/// Submissions in flight: the next one is there before the last one is done.
+const IN_FLIGHT: usize = 2;
+
+/// Most timestamps of a query set.
+const MAX_TIMESTAMPS: usize = wgpu::QUERY_SET_MAX_QUERIES as usize;
+
+/// Work-groups of a dispatch.
+#[derive(Clone, Copy)]
+pub enum Groups<'a> {
+    /// As many in each dimension.
+    Fixed(u32, u32, u32),
+    /// As many as three words of a [`VulkanDevice::zeroed`] buffer say when the pass begins.
+    Indirect {
+        /// The buffer. The pass itself must not write it.
+        buffer: &'a Buffer,
+        /// Where the words begin, in bytes; a multiple of 4.
+        offset: u64,
+    },
+}
+
+/// The work of a pass.
+#[derive(Clone, Copy)]
+pub struct Dispatch<'a> {
+    /// The kernel.
+    pub pipeline: &'a Pipeline,
+    /// Its bindings.
+    pub bindings: &'a Bindings,
+    /// Where its moving uniform begins, in bytes; `None` for a kernel without one.
+    pub offset: Option<u32>,
+    /// Work-groups.
+    pub groups: Groups<'a>,
+}
+
+/// Submissions that the device works on, and the host's clock.
+struct InFlight<'d> {
+    device: &'d VulkanDevice,
+    /// Submissions, and whether they end a frame.
+    waiting: VecDeque<(wgpu::SubmissionIndex, bool)>,
+    last: Instant,
+    /// Of every frame that is done.
+    wall_ns: Vec<u64>,
+}
+
+impl<'d> InFlight<'d> {
+    fn new(device: &'d VulkanDevice, frames: usize) -> InFlight<'d> {
+        let waiting = VecDeque::with_capacity(IN_FLIGHT);
+        InFlight { device, waiting, last: Instant::now(), wall_ns: Vec::with_capacity(frames) }
+    }
+
+    /// Waits until at most `most` submissions are not done.
+    fn drain(&mut self, most: usize) -> Result<()> {
+        while self.waiting.len() > most {
+            if let Some((submission, ends_frame)) = self.waiting.pop_front() {
+                self.device.wait(submission)?;
+                if ends_frame {
+                    let now = Instant::now();
+                    self.wall_ns.push((now - self.last).as_nanos() as u64);
+                    self.last = now;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl VulkanDevice {
+    /// Runs frames one after another and times each. Uploads are waited for before the first.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`] between submissions, or the device's.
+    pub fn run_frames(&self, frames: &[Frame<Dispatch>], interrupted: Interrupted) -> Result<Vec<FrameTime>> {
+        let mut times = Vec::with_capacity(frames.len());
+        let mut rest = frames;
+        while !rest.is_empty() {
+            let (chunk, after) = rest.split_at(self.frames_per_query_set(rest)?);
+            self.run_chunk(chunk, interrupted, &mut times)?;
+            rest = after;
+        }
+        Ok(times)
+    }
+
+    /// Runs a frame without timestamps, one pass at a time, and waits for it. Uploads are waited for before the first.
+    ///
+    /// # Errors
+    /// The device's.
+    pub fn run(&self, frame: &Frame<Dispatch>) -> Result<Duration> {
+        self.flush_uploads()?;
+        let start = Instant::now();
+        for pass in &frame.passes {
+            let submission = self.submit(std::slice::from_ref(pass), |_| None);
+            self.wait(submission)?;
+        }
+        Ok(start.elapsed())
+    }
+
+    /// How many frames one query set has timestamps for.
+    fn frames_per_query_set(&self, frames: &[Frame<Dispatch>]) -> Result<usize> {
+        let mut room = MAX_TIMESTAMPS;
+        let mut count = 0;
+        for frame in frames {
+            let needed = frame.timestamps();
+            if needed == 0 {
+                return Err(Error::Device("a frame has no pass".into()));
+            }
+            if needed > MAX_TIMESTAMPS {
+                return Err(Error::Device(format!(
+                    "a frame changes its stage {} times, too often to time",
+                    needed / 2
+                )));
+            }
+            if needed > room {
+                break;
+            }
+            room -= needed;
+            count += 1;
+        }
+        Ok(count)
+    }
+
+    fn run_chunk(
+        &self,
+        frames: &[Frame<Dispatch>],
+        interrupted: Interrupted,
+        times: &mut Vec<FrameTime>,
+    ) -> Result<()> {
+        let period = self.info().timestamp_period_ns;
+        let count: usize = frames.iter().map(Frame::timestamps).sum();
+        let queries = period.map(|_| {
+            self.device.create_query_set(&wgpu::QuerySetDescriptor {
+                label: None,
+                ty: wgpu::QueryType::Timestamp,
+                count: count as u32,
+            })
+        });
+        self.flush_uploads()?;
+        let mut in_flight = InFlight::new(self, frames.len());
+        let mut first_timestamp = 0;
+        for frame in frames {
+            let timers = frame.timers();
+            let per_submission = match frame.submissions {
+                Submissions::PerPass => 1,
+                Submissions::PerFrame => frame.passes.len(),
+            };
+            for (index, passes) in frame.passes.chunks(per_submission).enumerate() {
+                if interrupted() {
+                    in_flight.drain(0)?;
+                    return Err(Error::Interrupted);
+                }
+                let first_pass = index * per_submission;
+                let submission = self.submit(passes, |pass| {
+                    let PassTimer { begin, end } = timers[first_pass + pass];
+                    let query_set = queries.as_ref().filter(|_| begin.is_some() || end.is_some())?;
+                    Some(wgpu::ComputePassTimestampWrites {
+                        query_set,
+                        beginning_of_pass_write_index: begin.map(|index| first_timestamp + index),
+                        end_of_pass_write_index: end.map(|index| first_timestamp + index),
+                    })
+                });
+                let ends_frame = first_pass + passes.len() == frame.passes.len();
+                in_flight.waiting.push_back((submission, ends_frame));
+                in_flight.drain(IN_FLIGHT - 1)?;
+            }
+            first_timestamp += frame.timestamps() as u32;
+        }
+        in_flight.drain(0)?;
+        let ticks = match &queries {
+            Some(set) => self.resolve(set, count)?,
+            None => Vec::new(),
+        };
+        let mut ticks = ticks.as_slice();
+        for (frame, wall_ns) in frames.iter().zip(in_flight.wall_ns) {
+            let (own, after) = ticks.split_at(frame.timestamps().min(ticks.len()));
+            times.push(frame.time(wall_ns, own, period.unwrap_or_default()));
+            ticks = after;
+        }
+        Ok(())
+    }
+
+    /// Submits passes; `timer` says what the pass of an index writes.
+    fn submit<'q>(
+        &self,
+        passes: &[Pass<Dispatch>],
+        timer: impl Fn(usize) -> Option<wgpu::ComputePassTimestampWrites<'q>>,
+    ) -> wgpu::SubmissionIndex {
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        for (index, Pass { work, .. }) in passes.iter().enumerate() {
+            let timestamp_writes = timer(index);
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
+            pass.set_pipeline(&work.pipeline.pipeline);
+            pass.set_bind_group(0, &work.bindings.0, work.offset.as_slice());
+            match work.groups {
+                Groups::Fixed(x, y, z) => pass.dispatch_workgroups(x, y, z),
+                Groups::Indirect { buffer, offset } => pass.dispatch_workgroups_indirect(&buffer.buffer, offset),
+            }
+        }
+        self.queue.submit([encoder.finish()])
+    }
+
+    fn resolve(&self, set: &wgpu::QuerySet, count: usize) -> Result<Vec<u64>> {
+        let usage = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
+        let resolved = self.buffer("the timestamps", count as u64 * 8, usage)?;
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        encoder.resolve_query_set(set, 0..count as u32, &resolved.buffer, 0);
+        self.queue.submit([encoder.finish()]);
+        self.read(&resolved, count)
+    }
+
+    /// Waits until everything that was uploaded is there: the first frame must not pay for it.
+    fn flush_uploads(&self) -> Result<()> {
+        let uploads = self.queue.submit([]);
+        self.wait(uploads)
+    }
+}

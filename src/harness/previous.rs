@@ -1,0 +1,133 @@
+//! Rows of earlier sessions of the same run. Rows of different programs, devices or inputs must never be in one table:
+//! a run is resumed only if nothing of that differs.
+
+use crate::error::{Error, Result};
+use crate::record::journal::{FILE_NAME, Journal};
+use crate::record::row::{Input, Key, Row};
+use crate::record::run::Provenance;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+/// What to do where a run cannot be resumed.
+const HINT: &str = "begin a new run: rows of both must not be in one table";
+
+/// The rows of earlier sessions; none for a run that begins.
+#[derive(Default)]
+pub struct PreviousRun {
+    path: PathBuf,
+    journal: Option<Journal>,
+    /// Index of each row that need not be measured again, by key and device.
+    done: HashMap<(Key, usize), usize>,
+}
+
+impl PreviousRun {
+    /// Reads the journal of the run in `folder`.
+    ///
+    /// # Errors
+    /// Those of [`Journal::read`].
+    pub fn read(folder: &Path) -> Result<PreviousRun> {
+        let path = folder.join(FILE_NAME);
+        let journal = Journal::read(&path)?;
+        let done = journal.rows.iter().enumerate().filter(|(_, row)| row.status.is_final());
+        let done = done.map(|(index, row)| ((row.key.clone(), row.device), index)).collect();
+        Ok(PreviousRun { path, journal: Some(journal), done })
+    }
+
+    /// Its journal.
+    pub fn journal(&self) -> Option<&Journal> {
+        self.journal.as_ref()
+    }
+
+    /// The first line of its journal.
+    pub fn provenance(&self) -> Option<&Provenance> {
+        Some(&self.journal.as_ref()?.provenance)
+    }
+
+    /// Bytes that have been read of its journal.
+    pub fn length(&self) -> u64 {
+        self.journal.as_ref().map_or(0, |journal| journal.length)
+    }
+
+    /// Number of rows that need not be measured again.
+    pub fn done(&self) -> usize {
+        self.done.len()
+    }
+
+    /// True if the run ended in order and no row is worth another attempt.
+    pub fn is_complete(&self) -> bool {
+        self.journal.as_ref().is_some_and(|journal| {
+            journal.end.as_ref().is_some_and(|end| end.complete) && journal.rows.len() == self.done.len()
+        })
+    }
+
+    /// Refuses to go on with another program, device, machine or plan.
+    ///
+    /// # Errors
+    /// [`Error::Input`] that names what differs.
+    pub fn check(&self, now: &Provenance) -> Result<()> {
+        let Some(before) = self.provenance() else { return Ok(()) };
+        let machine = |p: &Provenance| {
+            let e = &p.environment;
+            (e.architecture.clone(), e.cpu.clone(), e.logical_cpus, e.variables.clone())
+        };
+        let revision = |p: &Provenance| format!("{}, built from {}", p.program.version, p.program.git_revision);
+        let devices = |p: &Provenance| p.devices.iter().map(|device| device.info.clone()).collect::<Vec<_>>();
+        let what = if before.program != now.program {
+            let (before, now) = (revision(before), revision(now));
+            format!("another build of the program ({before}) than this one ({now}) measured it")
+        } else if devices(before) != devices(now) {
+            let names = |p: &Provenance| {
+                let names = p.devices.iter().map(|d| format!("{} {}", d.info.name, d.info.driver).trim().to_owned());
+                names.collect::<Vec<_>>().join(", ")
+            };
+            format!("it was measured on {}, not on {}, or with other switches", names(before), names(now))
+        } else if machine(before) != machine(now) {
+            "the machine or its variables (RTBENCH_*, VK_*, LP_*, ...) have changed since".into()
+        } else if before.workload != now.workload || before.plan != now.plan {
+            "inputs, axes or the preset's file are not the same any more".into()
+        } else {
+            return Ok(());
+        };
+        Err(self.refusal(what))
+    }
+
+    /// Refuses to go on with an input whose content has changed under its name.
+    ///
+    /// # Errors
+    /// [`Error::Input`] that names it.
+    pub fn check_inputs(&self, inputs: &[Input]) -> Result<()> {
+        for input in inputs {
+            let known = || self.inputs().iter().filter(|known| known.kind == input.kind && known.name == input.name);
+            if known().next().is_some() && known().all(|known| known.hash != input.hash) {
+                let kind = input.kind.replace('_', " ");
+                return Err(self.refusal(format!("{} is not the {kind} that it was", input.name)));
+            }
+        }
+        Ok(())
+    }
+
+    fn refusal(&self, problem: String) -> Error {
+        Error::file(&self.path, None, problem, HINT)
+    }
+
+    fn inputs(&self) -> &[Input] {
+        self.journal.as_ref().map_or(&[], |journal| &journal.inputs)
+    }
+
+    /// The row of a key, if it need not be measured again.
+    pub fn row(&self, key: &Key, device: usize) -> Option<&Row> {
+        let index = *self.done.get(&(key.clone(), device))?;
+        self.journal.as_ref()?.rows.get(index)
+    }
+
+    /// True if an input has been recorded.
+    pub fn has_input(&self, input: &Input) -> bool {
+        self.inputs().contains(input)
+    }
+
+    /// Keys of the artifacts that have been recorded.
+    pub fn artifacts(&self) -> Vec<Key> {
+        let artifacts = self.journal.iter().flat_map(|journal| &journal.artifacts);
+        artifacts.map(|artifact| artifact.key.clone()).collect()
+    }
+}

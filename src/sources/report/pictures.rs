@@ -1,0 +1,38 @@
+//! Pictures of scenes and their step maps, from the runs' folders.
+
+use crate::error::Result;
+use crate::record::picture::{FOLDER, STEPS};
+use crate::report::embed::Pictures;
+use crate::report::html::escape;
+use crate::sources::runs::RecordedRun;
+use std::collections::BTreeSet;
+
+/// The caption of a step map: a sweep renders all of them with the same structure.
+const STEP_MAP: &str = "steps of bvh-stack (one ray per thread) per pixel, all ray types: the brighter, the more";
+
+/// All pictures; if several runs have a scene, those of the last.
+///
+/// # Errors
+/// [`crate::Error::Input`]: a folder or a file cannot be read.
+pub fn write(runs: &[RecordedRun]) -> Result<String> {
+    let mut pictures = Pictures::default();
+    for run in runs {
+        pictures.read(&run.folder.join(FOLDER))?;
+    }
+    let notes: String = pictures
+        .remove_large()
+        .iter()
+        .map(|name| format!("<p class=\"note\">{} is left out: larger than 4 MiB.</p>\n", escape(name)))
+        .collect();
+    // A set of whole names: `conference-obj` sorts between `conference` and `conference-steps`
+    let scenes: BTreeSet<&str> = pictures.names().map(|name| name.strip_suffix(STEPS).unwrap_or(name)).collect();
+    if scenes.is_empty() {
+        return Ok(format!("<p class=\"note\">The runs' folders have no pictures.</p>\n{notes}"));
+    }
+    let pair = |scene: &&str| {
+        let picture = pictures.figure(scene, scene, "picture");
+        let step_map = pictures.figure(&format!("{scene}{STEPS}"), scene, STEP_MAP);
+        format!("<h3>{}</h3>\n<div class=\"pair\">\n{picture}{step_map}</div>\n", escape(scene))
+    };
+    Ok(scenes.iter().map(pair).collect::<String>() + &notes)
+}

@@ -1,0 +1,92 @@
+//! Builders of structures: build times of unlike processors or numbers of threads are neither compared nor put into one
+//! column.
+
+use super::data::{Built, Data};
+use super::scenes::SceneKey;
+use super::structures::STRUCTURES;
+use super::variant::Variant;
+use crate::report::Number;
+
+/// Processor and number of threads: only build times that have both in common can be compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BuiltBy<'a> {
+    /// The processor; empty if unknown.
+    pub processor: &'a str,
+    /// The number of threads.
+    pub threads: usize,
+}
+
+impl BuiltBy<'_> {
+    /// `2 threads of an Example CPU`, without the article.
+    pub fn in_words(&self) -> String {
+        let processor = if self.processor.is_empty() { "an unknown processor" } else { self.processor };
+        format!("{} of {processor}", threads_in_words(self.threads))
+    }
+}
+
+/// `one thread`, `2 threads`.
+pub fn threads_in_words(number: usize) -> String {
+    if number == 1 { "one thread".into() } else { format!("{number} threads") }
+}
+
+impl Built {
+    /// The builder.
+    pub fn by(&self) -> BuiltBy<'_> {
+        BuiltBy { processor: &self.processor, threads: self.threads.unwrap_or(1) }
+    }
+
+    /// The build time, with its printed decimals.
+    pub fn time(&self) -> Option<Number> {
+        self.build_ms.map(|value| Number { value, places: self.places })
+    }
+}
+
+impl Data {
+    /// All builders, the fewest threads first because the thesis built on one; then in the order of the runs.
+    pub fn builders(&self) -> Vec<BuiltBy<'_>> {
+        let mut builders: Vec<BuiltBy> = Vec::new();
+        for by in self.built.iter().map(Built::by) {
+            if !builders.contains(&by) {
+                builders.push(by);
+            }
+        }
+        builders.sort_by_key(|by| by.threads);
+        builders
+    }
+
+    /// A structure each time that it was built, the last one last; a camera path makes no difference to it.
+    pub fn all_built(
+        &self,
+        scene: &SceneKey,
+        structure: &str,
+        variant: &Variant,
+    ) -> impl DoubleEndedIterator<Item = &Built> {
+        let scene = scene.built();
+        self.built.iter().filter(move |b| b.structure == structure && b.scene == *scene && b.variant == *variant)
+    }
+
+    /// A built structure, by any builder.
+    pub fn built_of(&self, scene: &SceneKey, structure: &str, variant: &Variant) -> Option<&Built> {
+        self.all_built(scene, structure, variant).next_back()
+    }
+
+    /// A built structure, with the thesis's options.
+    pub fn thesis_built(&self, scene: &SceneKey, structure: &str) -> Option<&Built> {
+        self.thesis_built_by(None, scene, structure)
+    }
+
+    /// A structure with the thesis's options by this builder, or by any; of several, the last. Builder and camera path
+    /// change nothing in it but the build time.
+    pub fn thesis_built_by(&self, by: Option<BuiltBy>, scene: &SceneKey, structure: &str) -> Option<&Built> {
+        let scene = scene.built();
+        let variant = Variant::of_thesis(scene.thesis(), structure);
+        let of_builder = |b: &Built| by.is_none_or(|by| b.by() == by);
+        self.all_built(scene, structure, &variant).rfind(|b| of_builder(b))
+    }
+
+    /// Grid, kd-tree and BVH of a scene, all three by the same builder or, for `None`, by anyone.
+    pub fn thesis_trio(&self, by: Option<BuiltBy>, scene: &SceneKey) -> Option<[&Built; 3]> {
+        let [grid, kdtree, bvh] = STRUCTURES.map(|structure| self.thesis_built_by(by, scene, structure));
+        Some([grid?, kdtree?, bvh?])
+    }
+}

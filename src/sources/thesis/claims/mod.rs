@@ -1,0 +1,94 @@
+//! The claims of the thesis, judged by measurements or by its own numbers ([`crate::sources::claims`]).
+
+mod cases;
+mod list;
+mod occupancy;
+mod options;
+mod resolution;
+
+pub use cases::{MIRRORS, UNIFORM_CROWDING, crowding};
+pub use occupancy::ABOUT_20_PCT;
+pub use resolution::{FAR, NEAR};
+
+use super::data::{Data, Failure, Frame};
+use super::scenes::SceneKey;
+use super::{DOCUMENT, SOURCE};
+use crate::compare::judge::{Outcome, UNKNOWN_NOISE_PCT, Uncertain};
+use crate::sources::claims::{Basis, Case, Finding, Statement};
+use list::{CLAIMS, Claim};
+
+/// A case of a scene.
+fn case(scene: &SceneKey, what: impl Into<String>, outcome: Outcome, numbers: String) -> Case {
+    Case { scene: scene.to_string(), what: what.into(), outcome, numbers }
+}
+
+/// A mean frame time with its noise. That of a printed time is unknown, and none is assumed in addition to the margin.
+fn frame_time(data: &Data, frame: &Frame) -> Uncertain {
+    let unknown = if data.published { 0.0 } else { UNKNOWN_NOISE_PCT };
+    Uncertain::time(frame.mean_ms, frame.noise_pct.unwrap_or(unknown))
+}
+
+/// Judges every claim; those about frame times, or counts in their place, once per device. Exceptions are those of a
+/// published device.
+pub fn judge(data: &Data, published: &Data, published_device: usize) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for claim in &CLAIMS {
+        let printed = (claim.cases)(published, published_device);
+        let devices = if claim.basis == Basis::FrameTimes { data.devices.len() } else { 1 };
+        findings.extend((0..devices).map(|device| finding(claim, data, device, &printed)));
+    }
+    findings
+}
+
+fn finding(claim: &Claim, data: &Data, device: usize, printed: &[Case]) -> Finding {
+    let mut warnings = Vec::new();
+    let by_time = claim.basis == Basis::FrameTimes;
+    let software = by_time && data.devices[device].is_software();
+    let (basis, cases) = match claim.by_counts.filter(|_| software) {
+        Some(by_counts) => {
+            warnings.push(
+                "Judged by steps and triangle tests per ray: this device's times say nothing about a GPU's.".to_owned(),
+            );
+            (Basis::Counts, by_counts(data, device))
+        }
+        None => (claim.basis, (claim.cases)(data, device)),
+    };
+    let without_gpu = software && basis == Basis::FrameTimes;
+    if without_gpu {
+        warnings.push("About this machine only: the device computes on the CPU and is no GPU.".to_owned());
+    }
+    if !claim.remark.is_empty() {
+        warnings.push(claim.remark.to_owned());
+    }
+    let statement = Statement {
+        source: SOURCE.name,
+        document: DOCUMENT,
+        claim: claim.id,
+        statement: claim.statement,
+        needs: claim.needs,
+    };
+    let found = Finding::of(statement, basis, cases, printed);
+    Finding {
+        device: if by_time { data.devices[device].label.clone() } else { String::new() },
+        without_gpu,
+        published: found.published.filter(|_| !data.published),
+        failed: if by_time { failed(claim, data, device) } else { Vec::new() },
+        left_out: (claim.left_out)(data),
+        warnings,
+        ..found
+    }
+}
+
+/// The measurements of a device that were made for a claim and never gave a result.
+fn failed(claim: &Claim, data: &Data, device: usize) -> Vec<String> {
+    let later = |failure: &Failure| {
+        data.frames.iter().any(|f| {
+            (f.device, f.config, f.width, f.height) == (device, failure.config, failure.width, failure.height)
+                && f.scene == failure.scene
+                && f.structure == failure.structure
+                && f.variant == failure.variant
+        })
+    };
+    let of_claim = |f: &&Failure| f.device == device && claim.scope.has(data, f) && !later(f);
+    data.failures.iter().filter(of_claim).map(|f| format!("{} ({})", f.what, f.message)).collect()
+}

@@ -1,0 +1,259 @@
+//! The numbers behind tables, figures and claims, by scene, structure, variant and device. Published and measured
+//! numbers have the same form, so that the same code reads both.
+
+#![allow(missing_docs)] // The names of most fields say what they are
+
+use super::scenes::{SceneKey, ThesisScene};
+use super::variant::Variant;
+use crate::compare::pair::Conditions;
+use crate::report::Number;
+use crate::sources::convention::Steps;
+use crate::workloads::trace::Properties;
+use crate::workloads::trace::backend::{Config, DeviceType};
+use std::cmp::Reverse;
+
+/// All numbers of the thesis, or of runs.
+#[derive(Clone, Debug, Default)]
+pub struct Data {
+    /// True for the numbers that the thesis printed.
+    pub published: bool,
+    /// Devices, in the order of the runs.
+    pub devices: Vec<Device>,
+    /// The thesis's scenes in its order, then the others by name.
+    pub scenes: Vec<Scene>,
+    /// Frame times, one per configuration.
+    pub frames: Vec<Frame>,
+    /// Counts per ray.
+    pub counts: Vec<Counts>,
+    /// Built structures, each once by every processor and number of threads.
+    pub built: Vec<Built>,
+    /// Measurements without a usable result.
+    pub failures: Vec<Failure>,
+    /// Rows of tables 5.7 and 5.8: only the thesis could limit registers.
+    pub register_limit: Vec<RegisterLimit>,
+    /// What a reader should know about the runs as a whole.
+    pub notes: Vec<String>,
+}
+
+/// A device that was measured.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Device {
+    /// The name in titles and columns; unique.
+    pub label: String,
+    /// The kind; `None` for the thesis's devices.
+    pub kind: Option<DeviceType>,
+    /// Driver, processor, system and the like, by heading; empty where unknown.
+    pub facts: Vec<(&'static str, String)>,
+    /// True if kernels had wgpu's checks in at least one of the rows that are used.
+    pub checked: bool,
+}
+
+impl Device {
+    /// True if its times say nothing about a GPU: the CPU twins and software rasterisers.
+    pub fn is_software(&self) -> bool {
+        matches!(self.kind, Some(DeviceType::CpuTwin | DeviceType::SoftwareRasteriser))
+    }
+}
+
+/// A scene with its properties.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    pub key: SceneKey,
+    pub triangles: u64,
+    pub vertices: u64,
+    /// `None` where unknown.
+    pub lights: Option<u64>,
+    /// Share of the surface that mirrors, 0 to 1; `None` where unknown.
+    pub mirror_share: Option<f64>,
+}
+
+/// Frame times of one configuration, in milliseconds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// Index into [`Data::devices`].
+    pub device: usize,
+    pub scene: SceneKey,
+    pub structure: String,
+    pub variant: Variant,
+    pub config: Config,
+    pub width: u32,
+    pub height: u32,
+    pub conditions: Conditions,
+    pub min_ms: f64,
+    pub max_ms: f64,
+    pub mean_ms: f64,
+    /// Decimals of the three times, if they were printed.
+    pub places: Option<[usize; 3]>,
+    /// Spread over passes in percent; `None` after a single pass.
+    pub noise_pct: Option<f64>,
+    /// True if this measurement replaced an earlier one of the same.
+    pub repeated: bool,
+}
+
+/// Averages per ray of one type. A device that rounds in another way counts other numbers, so they belong to one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Counts {
+    /// Index into [`Data::devices`].
+    pub device: usize,
+    /// Rays that were traced; counts of primary rays exist under all three.
+    pub config: Config,
+    pub scene: SceneKey,
+    pub structure: String,
+    pub variant: Variant,
+    /// Ray type: 0 primary, 1 shadow, 2 reflected.
+    pub ray: usize,
+    /// Side of the square image that the rays belong to.
+    pub resolution: u32,
+    pub steps: Steps,
+    pub tests: f64,
+    /// `None` for a structure without restarts.
+    pub restarts: Option<f64>,
+}
+
+/// A built structure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Built {
+    pub scene: SceneKey,
+    pub structure: String,
+    pub variant: Variant,
+    /// The thesis has some of them.
+    pub properties: Properties,
+    pub build_ms: Option<f64>,
+    /// Decimals of the build time, if it was printed.
+    pub places: Option<usize>,
+    pub threads: Option<usize>,
+    /// The number of builds: the time is their median.
+    pub builds: usize,
+    /// Processor that built it.
+    pub processor: String,
+    /// MiB by the thesis's accounting, geometry included.
+    pub thesis_mib: Option<f64>,
+    /// MiB as allocated, geometry included.
+    pub allocated_mib: Option<f64>,
+    /// True if this one replaced an earlier one.
+    pub repeated: bool,
+}
+
+/// A configuration without a number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Failure {
+    pub scene: SceneKey,
+    /// Index into [`Data::devices`].
+    pub device: usize,
+    /// Scene, structure with its options, rays and size, in words.
+    pub what: String,
+    pub structure: String,
+    pub variant: Variant,
+    pub config: Config,
+    pub width: u32,
+    pub height: u32,
+    pub message: String,
+}
+
+/// A row of table 5.7 or 5.8.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RegisterLimit {
+    /// Index into [`Data::devices`].
+    pub device: usize,
+    pub scene: ThesisScene,
+    pub structure: String,
+    pub registers: u32,
+    /// In percent.
+    pub occupancy: u32,
+    pub mean_ms: f64,
+    /// Speed-up by the limit, as printed.
+    pub speedup: Option<i32>,
+}
+
+/// The configuration whose column shows a ray type: the one that adds it, as in tables 5.9 to 5.11.
+pub fn config_adding(ray: usize) -> Config {
+    Config::ALL[ray.min(2)]
+}
+
+impl Frame {
+    /// The fastest, the slowest and the mean frame, with their printed decimals.
+    pub fn times(&self) -> [Number; 3] {
+        let of = |index: usize, value| Number { value, places: self.places.map(|places| places[index]) };
+        [of(0, self.min_ms), of(1, self.max_ms), of(2, self.mean_ms)]
+    }
+}
+
+impl Counts {
+    fn is(&self, scene: &SceneKey, structure: &str, variant: &Variant, ray: usize) -> bool {
+        self.ray == ray && self.structure == structure && self.scene == *scene && self.variant == *variant
+    }
+}
+
+impl Data {
+    /// The frame times of a configuration with a square image of `side` pixels.
+    pub fn frame(
+        &self,
+        device: usize,
+        scene: &SceneKey,
+        (structure, variant): (&str, &Variant),
+        config: Config,
+        side: u32,
+    ) -> Option<&Frame> {
+        self.frames.iter().find(|f| {
+            (f.device, f.config, f.width, f.height) == (device, config, side, side)
+                && f.structure == structure
+                && f.scene == *scene
+                && f.variant == *variant
+        })
+    }
+
+    /// The same with the thesis's options: the defaults, or its own resolution of the grid.
+    pub fn thesis_frame(
+        &self,
+        device: usize,
+        scene: &SceneKey,
+        structure: &str,
+        config: Config,
+        side: u32,
+    ) -> Option<&Frame> {
+        self.frame(device, scene, (structure, &Variant::of_thesis(scene.thesis(), structure)), config, side)
+    }
+
+    /// Counts of a ray type, with the thesis's options.
+    pub fn thesis_counts(&self, scene: &SceneKey, structure: &str, ray: usize) -> Option<&Counts> {
+        self.counts_of(scene, structure, &Variant::of_thesis(scene.thesis(), structure), ray)
+    }
+
+    /// Counts of a ray type at the largest resolution, under the configuration that adds it; of several devices those
+    /// of the first.
+    pub fn counts_of(&self, scene: &SceneKey, structure: &str, variant: &Variant, ray: usize) -> Option<&Counts> {
+        let wanted = |c: &&Counts| c.config == config_adding(ray) && c.is(scene, structure, variant, ray);
+        self.counts.iter().filter(wanted).max_by_key(|c| (c.resolution, Reverse(c.device)))
+    }
+
+    /// Counts of the same measurement as `other`, but with these options.
+    pub fn counts_with(&self, other: &Counts, variant: &Variant) -> Option<&Counts> {
+        self.counts.iter().find(|c| {
+            (c.device, c.config, c.resolution) == (other.device, other.config, other.resolution)
+                && c.is(&other.scene, &other.structure, variant, other.ray)
+        })
+    }
+
+    /// Counts of a ray type that belong to a frame time.
+    pub fn counts_of_frame(&self, frame: &Frame, ray: usize) -> Option<&Counts> {
+        self.counts.iter().find(|c| {
+            (c.device, c.config, c.resolution) == (frame.device, frame.config, frame.width)
+                && frame.width == frame.height
+                && c.is(&frame.scene, &frame.structure, &frame.variant, ray)
+        })
+    }
+
+    /// Sides of the square images that were measured on a device, from the smallest.
+    pub fn sides(&self, device: usize) -> Vec<u32> {
+        let square = self.frames.iter().filter(|f| f.device == device && f.width == f.height);
+        let mut sides: Vec<u32> = square.map(|f| f.width).collect();
+        sides.sort_unstable();
+        sides.dedup();
+        sides
+    }
+
+    /// The properties of a scene.
+    pub fn scene(&self, key: &SceneKey) -> Option<&Scene> {
+        self.scenes.iter().find(|s| s.key == *key)
+    }
+}

@@ -1,0 +1,65 @@
+//! Building a structure so that Ctrl-C need not wait for it. A builder cannot be interrupted, so it runs on its own
+//! thread, and after Ctrl-C that thread is abandoned.
+
+use crate::error::{Error, Result};
+use crate::record::statistics;
+use crate::scene::Scene;
+use crate::workloads::trace::backend::Interrupted;
+use crate::workloads::trace::{Built, Selection};
+use std::sync::Arc;
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::Duration;
+
+/// How often the waiting thread looks for Ctrl-C.
+const POLL: Duration = Duration::from_millis(20);
+
+/// Builds the structure `times` times, at least once, and returns the last one with the median build time. Never are
+/// two of them in memory.
+///
+/// # Errors
+/// Those of [`build`].
+pub fn build_repeatedly(
+    selection: &Selection,
+    scene: &Arc<Scene>,
+    threads: usize,
+    times: usize,
+    interrupted: Interrupted,
+) -> Result<Built> {
+    let mut built = build(selection, scene, threads, interrupted)?;
+    let mut build_ms = vec![built.build_ms];
+    for _ in 1..times {
+        drop(built);
+        built = build(selection, scene, threads, interrupted)?;
+        build_ms.push(built.build_ms);
+    }
+    built.build_ms = statistics::median(&build_ms).unwrap_or(built.build_ms);
+    Ok(built)
+}
+
+/// Builds the structure on `threads` threads (0: as many as there are). After [`Error::Interrupted`] the builder still
+/// runs: the process is to end.
+///
+/// # Errors
+/// The builder's, or [`Error::Interrupted`].
+pub fn build(selection: &Selection, scene: &Arc<Scene>, threads: usize, interrupted: Interrupted) -> Result<Built> {
+    if interrupted() {
+        return Err(Error::Interrupted);
+    }
+    let (done, result) = channel();
+    let (own, shared) = (selection.clone(), Arc::clone(scene));
+    let builder = std::thread::spawn(move || {
+        // The receiver may be gone.
+        let _ = done.send(own.build(&shared, threads));
+    });
+    loop {
+        match result.recv_timeout(POLL) {
+            Ok(built) => return built,
+            Err(RecvTimeoutError::Timeout) if interrupted() => return Err(Error::Interrupted),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => match builder.join() {
+                Err(panic) => std::panic::resume_unwind(panic),
+                Ok(()) => return Err(Error::Device(format!("{} ended without a structure", selection.name()))),
+            },
+        }
+    }
+}

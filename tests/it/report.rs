@@ -1,0 +1,77 @@
+//! Tables in every format for a source of any name, and documents with parts that a command writes.
+
+use rtbench::report::format::{self, Format};
+use rtbench::report::splice::{Need, splice};
+use rtbench::report::{Cell, Column, Form, Number, Origin, Row, Table, html, wrap};
+use std::path::Path;
+
+/// A table of a source that is not in the program: one row with a measured and a published number, one with neither.
+fn table() -> Table {
+    let compared = Cell::Number { value: Some(3.0.into()), published: Some(Number { value: 1.5, places: Some(1) }) };
+    Table {
+        origin: Origin { source: "other", kind: "list", published: "1999" },
+        id: "7".into(),
+        title: "Speeds".into(),
+        keys: vec!["scene".into()],
+        columns: vec![Column::of("tree", "rate", "Mrays/s", Form::Fixed(2)), Column::new("name", "", Form::Whole)],
+        rows: vec![
+            Row { keys: vec!["hall".into()], cells: vec![compared, Cell::Text("a name".into())] },
+            Row { keys: vec!["scan".into()], cells: vec![Cell::number(None), Cell::number(2.0)] },
+        ],
+        notes: vec!["A note.".into()],
+        with_published: true,
+        is_published: false,
+    }
+}
+
+#[test]
+fn the_caller_names_the_source_and_its_values() {
+    let write = |format| format::write(&[table()], format);
+    let text = write(Format::Text);
+    assert!(text.starts_with("Table 7: Speeds\n") && text.ends_with("  A note.\n"), "{text}");
+    let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split_whitespace().collect()).collect();
+    for line in [&["hall", "run", "3.00", "a", "name"][..], &["1999", "1.5", "-"], &["ratio", "2.00", "-"]] {
+        assert!(lines.iter().any(|l| l == line), "{line:?}: {text}");
+    }
+    let csv = write(Format::Csv);
+    let lines: Vec<&str> = csv.lines().collect();
+    assert_eq!(lines[0], "source,table,title,row,detail,column,unit,value,published,ratio");
+    assert_eq!(lines[1], "other,7,Speeds,hall,,tree rate,Mrays/s,3,1.5,2");
+    assert_eq!(lines[3], "other,7,Speeds,scan,,tree rate,Mrays/s,,,");
+    assert!(write(Format::Latex).contains("\\caption{Speeds (other list 7)}"));
+    assert!(write(Format::Markdown).contains("| 1999 | 1.5 | – |"));
+    let page = html::table(&table());
+    assert!(page.contains("<tr class=\"published\"><td class=\"key\"></td><td class=\"key\">1999</td>"), "{page}");
+}
+
+#[test]
+fn published_numbers_are_in_their_own_column() {
+    let published = Table { is_published: true, with_published: false, ..table() };
+    let csv = format::write(&[published], Format::Csv);
+    assert!(csv.contains("other,7,Speeds,hall,,tree rate,Mrays/s,,3,"), "{csv}");
+}
+
+#[test]
+fn text_is_broken_at_spaces() {
+    let text = wrap::wrap(&"word ".repeat(60), "  ");
+    assert!(text.lines().all(|line| line.starts_with("  word") && line.len() <= 100), "{text}");
+    assert_eq!(text.split_whitespace().count(), 60);
+    let long = "x".repeat(150);
+    assert_eq!(wrap::wrap(&format!("a {long} b"), ""), format!("a\n{long}\nb\n"));
+}
+
+#[test]
+fn markers_come_in_pairs() {
+    let path = Path::new("doc.md");
+    let block = [("x".to_owned(), "new".to_owned())];
+    let error = |text: &str| splice(path, text, &block, Need::All).unwrap_err().to_string();
+    assert!(error("<!-- rtbench:x -->\n").contains("doc.md:1: 'x' begins and does not end"));
+    assert!(error("\n<!-- /rtbench:x -->\n").contains("doc.md:2: 'x' ends and has not begun"));
+    assert!(error("<!-- rtbench:x -->\n<!-- rtbench:y -->\n").contains("doc.md:2: 'y' begins before 'x' ends"));
+    assert!(error("no markers").contains("no place for x"));
+    // Windows line ends stay; other parts are left alone; every place of a block is filled.
+    let text = "a\r\n<!-- rtbench:y -->\r\nkept\r\n<!-- /rtbench:y -->\r\n<!--rtbench:x-->\r\n<!-- /rtbench:x -->\r\nb";
+    let once = splice(path, text, &block, Need::All).unwrap();
+    assert_eq!(once, text.replace("x-->\r\n", "x-->\r\n\r\nnew\r\n\r\n"));
+    assert_eq!(splice(path, &once, &block, Need::All).unwrap(), once);
+}

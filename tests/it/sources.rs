@@ -1,0 +1,4 @@
+//! Sources: documents with published numbers, and their tables, figures and claims from recorded runs.
+
+mod select; // sources, tables and devices by name
+mod thesis; // the thesis of 2009
