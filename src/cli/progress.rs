@@ -19,6 +19,8 @@ pub struct Progress {
     finished: usize,
     work: u64,
     done: u64,
+    /// Message of the last row without a result: many cases may lack the same input.
+    message: String,
     /// Work done when the last row was finished, and the time of that.
     last: (u64, Instant),
     /// Moving average of seconds per unit of work.
@@ -36,7 +38,18 @@ impl Progress {
             bar.enable_steady_tick(Duration::from_millis(500));
             bar
         });
-        Progress { workload, bar, quiet, rows, finished: 0, work, done: 0, last: (0, Instant::now()), pace: None }
+        Progress {
+            workload,
+            bar,
+            quiet,
+            rows,
+            finished: 0,
+            work,
+            done: 0,
+            message: String::new(),
+            last: (0, Instant::now()),
+            pace: None,
+        }
     }
 
     /// Updates the display after an event of the sweep.
@@ -91,6 +104,7 @@ impl Progress {
         }
         self.last = (self.done, Instant::now());
         let what = summary::label(self.workload, row);
+        let message = std::mem::replace(&mut self.message, row.message.clone());
         let place = format!("{}/{} {what}", self.finished, self.rows);
         match row.status {
             Status::Ok if self.quiet || self.bar.is_some() => {}
@@ -99,6 +113,7 @@ impl Progress {
                 line(None, &format!("{place}: {mean:.2} ms{}", self.estimate()));
             }
             Status::Skipped if self.quiet => {}
+            Status::Skipped | Status::Failed if row.message == message => {}
             Status::Skipped => line(self.bar.as_ref(), &format!("{place}: skipped: {}", row.message)),
             Status::Wrong => line(self.bar.as_ref(), &format!("{place}: WRONG: {}", row.message)),
             Status::Failed => line(self.bar.as_ref(), &format!("{place}: FAILED: {}", row.message)),

@@ -11,6 +11,7 @@ use crate::harness::run::{self, Job};
 use crate::harness::workload::{Info, Library, Workload};
 use crate::harness::{Plan, Request, environment, summary};
 use crate::record::row::{Row, Status};
+use crate::record::terminal::counted;
 use crate::record::{files, journal};
 use crate::workloads;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
@@ -162,18 +163,33 @@ impl Given {
         let Some(run) = &self.common.resume else { return self.measure(PreviousRun::default()) };
         let folder = journal::folder_of(run);
         let previous = PreviousRun::read(&folder)?;
+        let name = self.workload.info().name;
+        if let Some(began) = previous.provenance().filter(|began| began.workload != name) {
+            let problem = format!("it is a run of `rtbench {}`, not of `rtbench {name}`", began.workload);
+            let hint = format!("rtbench {} --resume {}", began.workload, folder.display());
+            return Err(Error::file(&folder.join(journal::FILE_NAME), Some(1), problem, hint));
+        }
+        let recorded = previous.provenance().map(|provenance| &provenance.arguments[..]).unwrap_or_default();
+        let began = Given::parse(recorded).filter(|began| began.workload.info().name == name);
+        let (strict, quiet) = (self.common.strict, self.common.quiet);
         if previous.is_complete() {
-            if !self.common.quiet {
+            if !quiet {
                 output::note(&format!("nothing is left to measure in {}", folder.display()));
             }
             let rows = previous.journal().map_or(&[][..], |journal| &journal.rows);
-            return Ok(self.conclude(rows));
+            if let Some(journal) = previous.journal() {
+                // They may have been deleted
+                summary::write(self.workload, journal, &folder)?;
+            }
+            let mut began = began.unwrap_or(self);
+            began.common.strict |= strict;
+            began.common.quiet |= quiet;
+            return Ok(began.conclude(rows));
         }
-        let recorded = previous.provenance().map(|provenance| &provenance.arguments[..]).unwrap_or_default();
-        match Given::parse(recorded).filter(|began| began.workload.info().name == self.workload.info().name) {
+        match began {
             Some(mut began) => {
-                began.common.quiet |= self.common.quiet;
-                began.common.strict |= self.common.strict;
+                began.common.quiet |= quiet;
+                began.common.strict |= strict;
                 began.common.out = Some(folder);
                 began.measure(previous).map_err(from_elsewhere)
             }
@@ -206,29 +222,33 @@ impl Given {
         for absent in &plan.absent {
             output::note(&format!("left out: {absent}"));
         }
+        plan.notes.iter().for_each(|text| output::note(text));
         Ok(plan)
     }
 
     /// Prints the plan.
     fn list(&self) -> Result<ExitCode> {
+        if self.common.resume.is_some() {
+            let hint = "leave it out; the journal's first line tells how the run began";
+            return Err(Error::argument("--resume", "a plan is of a run that begins", hint));
+        }
+        self.common.device.check()?;
         let plan = self.plan()?;
         let axes: Vec<&str> = self.workload.info().axes.iter().map(|axis| axis.name).collect();
-        let mut text = format!("{}\n", axes.join(","));
-        for case in &plan.cases {
-            let cells = axes.iter().map(|axis| match case.axis(axis) {
-                cell if cell.contains(',') => format!("\"{cell}\""),
-                cell => cell.to_owned(),
-            });
-            text += &format!("{}\n", cells.collect::<Vec<_>>().join(","));
-        }
-        output::print(&text)?;
+        let mut csv = csv::Writer::from_writer(Vec::new());
+        let written = csv.write_record(&axes).and_then(|()| {
+            plan.cases.iter().try_for_each(|case| csv.write_record(axes.iter().map(|axis| case.axis(axis))))
+        });
+        // Writing to memory does not fail
+        let bytes = written.ok().and_then(|()| csv.into_inner().ok()).unwrap_or_default();
+        output::print(&String::from_utf8_lossy(&bytes))?;
         let settings = plan.settings;
         output::note(&format!(
-            "{} cases of preset {}, {} passes after {} frames of warm-up each",
-            plan.cases.len(),
+            "{} of preset {}, {} after {} of warm-up each",
+            counted(plan.cases.len(), "case", "cases"),
             plan.preset,
-            settings.passes,
-            settings.warmup_frames
+            counted(settings.passes, "pass", "passes"),
+            counted(settings.warmup_frames, "frame", "frames")
         ));
         Ok(ExitCode::SUCCESS)
     }
@@ -241,10 +261,17 @@ impl Given {
         if let (Some(out), None) = (&common.out, previous.provenance()) {
             files::create_run_folder(out)?;
         }
-        let device = common.device.open()?;
+        // An empty folder would only be in the way of the next attempt
+        let remove = || {
+            if let (Some(out), None) = (&common.out, previous.provenance()) {
+                let _ = std::fs::remove_dir(out);
+            }
+        };
+        let device = common.device.open().inspect_err(|_| remove())?;
         if !common.quiet {
             device::announce(&device);
         }
+        let is_new = previous.provenance().is_none();
         let out = match &common.out {
             Some(out) => out.clone(),
             None => default_folder(&device.device.info().name),
@@ -268,7 +295,14 @@ impl Given {
             watch: &mut |event| progress.event(event),
         });
         progress.end();
-        let outcome = outcome.inspect_err(|error| tell_where(self.workload, &out, error))?;
+        let outcome = outcome.inspect_err(|error| {
+            if is_new {
+                let _ = std::fs::remove_dir(&out);
+            }
+            if is_new || !matches!(error, Error::Input(_)) {
+                tell_where(self.workload, &out, error);
+            }
+        })?;
         if !common.quiet {
             output::print(&summary::terminal(self.workload, &outcome.journal))?;
             output::print(&format!("results: {}\n", out.display()))?;
@@ -286,7 +320,8 @@ impl Given {
             row.map_or(String::new(), |row| format!("{}: {}", summary::label(self.workload, row), row.message))
         };
         if skipped > 0 && !self.common.quiet {
-            let text = format!("{skipped} of {} cases were skipped; the first: {}", rows.len(), first(Status::Skipped));
+            let all = counted(rows.len(), "case", "cases");
+            let text = format!("{skipped} of {all} skipped; the first: {}", first(Status::Skipped));
             output::note(&text);
         }
         if wrong + failed > 0 {
@@ -296,15 +331,16 @@ impl Given {
                 _ => format!("have no result: {wrong} disagreed with the reference, {failed} could not run"),
             };
             let first = first(if wrong > 0 { Status::Wrong } else { Status::Failed });
-            output::complain(&format!("{} of {} cases {what}; the first: {first}", wrong + failed, rows.len()));
+            let all = counted(rows.len(), "case", "cases");
+            output::complain(&format!("{} of {all} {what}; the first: {first}", wrong + failed));
             return ExitCode::from(if wrong > 0 { 1 } else { 2 });
         }
         if count(Status::Ok) == 0 {
-            output::complain(&format!("nothing could be measured: all {} cases were skipped", rows.len()));
+            output::complain("nothing could be measured: all cases were skipped");
             return ExitCode::from(2);
         }
         if skipped > 0 && self.common.strict {
-            output::complain(&format!("--strict: {skipped} of {} cases were skipped", rows.len()));
+            output::complain(&format!("--strict: {skipped} of {} skipped", counted(rows.len(), "case", "cases")));
             return ExitCode::from(2);
         }
         ExitCode::SUCCESS

@@ -64,6 +64,11 @@ pub struct DeviceInfo {
 }
 
 impl DeviceInfo {
+    /// `NAME DRIVER`.
+    pub fn with_driver(&self) -> String {
+        format!("{} {}", self.name, self.driver).trim().to_owned()
+    }
+
     /// True if kernels on this device agree with their twins to the bit. The twins themselves do, and lavapipe does:
     /// both compute every operation on the CPU with IEEE rounding.
     pub fn agrees_with_twins(&self) -> bool {

@@ -49,6 +49,9 @@ fn push(samples: &mut Samples, frames: &[FrameTime]) {
         (Some(device), Some(passes)) => passes.push(device),
         _ => samples.device_ns = None,
     }
+    if frames.iter().any(|f| f.stages.len() != samples.stages.len()) {
+        samples.stage_ns = None;
+    }
     if let Some(stages) = &mut samples.stage_ns {
         stages.push(frames.iter().map(|f| f.stages.clone()).collect());
     }

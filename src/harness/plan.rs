@@ -43,6 +43,8 @@ pub struct Plan {
     pub library: Library,
     /// What the preset names and this machine does not have.
     pub absent: Vec<String>,
+    /// For the user.
+    pub notes: Vec<String>,
 }
 
 impl Plan {
@@ -71,16 +73,25 @@ impl Plan {
         in_range("--warmup", settings.warmup_frames, 0)?;
         in_range("builds", settings.builds, 1)?;
         let mut cases: Vec<Case> = Vec::new();
+        let mut shorter = 0;
         for part in parts {
             part.frames.map_or(Ok(()), |frames| in_range("--frames", frames, 1))?;
             for case in workload.plan(&part, &request.library)? {
                 // Of cases that differ in nothing but their frames, the first part's
-                if !cases.iter().any(|known| is_same(known, &case)) {
-                    cases.push(case);
+                match cases.iter().find(|known| is_same(known, &case)) {
+                    None => cases.push(case),
+                    Some(known) => shorter += usize::from(known.axes != case.axes),
                 }
             }
         }
-        Ok(Plan { preset: preset.name, cases, settings, library: request.library.clone(), absent })
+        if cases.is_empty() {
+            return Err(Error::argument("--preset", "the plan has no case", "give a value for each axis"));
+        }
+        let mut notes = Vec::new();
+        if shorter > 0 {
+            notes.push(format!("{shorter} cases differ from an earlier part's in their frames only and are left out"));
+        }
+        Ok(Plan { preset: preset.name, cases, notes, settings, library: request.library.clone(), absent })
     }
 
     /// The inputs, each once, with their cases.
@@ -152,7 +163,10 @@ fn chosen(workload: &dyn Workload, preset: &Preset, request: &Request, absent: &
             for name in subjects {
                 // A subject that the preset names keeps its parts. If what is compared is given, it is compared as the
                 // first of them says: the others are there for what they compare themselves.
-                let named = |part: &&Part| part.of(subject).contains(name);
+                let named = |part: &&Part| {
+                    let own = part.values.get(subject).or(preset.common.values.get(subject));
+                    own.is_some_and(|names| names.contains(name))
+                };
                 let most = if request.values.contains_key(compared) { 1 } else { usize::MAX };
                 let before = parts.len();
                 parts.extend(preset.parts.iter().filter(named).take(most).map(all));
@@ -165,13 +179,20 @@ fn chosen(workload: &dyn Workload, preset: &Preset, request: &Request, absent: &
             }
         }
         None => {
-            for part in preset.parts.iter().map(all) {
-                let missing: Vec<String> =
-                    part.of(subject).iter().filter_map(|name| workload.absent(name, &request.library)).collect();
-                if missing.is_empty() {
+            for mut part in preset.parts.iter().map(all) {
+                let Some(names) = part.values.get_mut(subject) else {
+                    parts.push(part);
+                    continue;
+                };
+                names.retain(|name| {
+                    let missing = workload.absent(name, &request.library);
+                    let is_here = missing.is_none();
+                    absent.extend(missing);
+                    is_here
+                });
+                if !names.is_empty() {
                     parts.push(part);
                 }
-                absent.extend(missing);
             }
             let mut seen = Vec::new();
             absent.retain(|text| !seen.contains(text) && (seen.push(text.clone()), true).1);

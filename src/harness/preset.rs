@@ -5,9 +5,9 @@
 
 use super::workload::{Info, Part};
 use crate::error::{Error, Result};
-use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
+use toml::{Table, Value};
 
 /// A plan as a file describes it; every value as a user would type it.
 #[derive(Clone, Debug)]
@@ -27,61 +27,6 @@ pub struct Preset {
     pub threads: usize,
     /// How often each artifact is built; the median counts.
     pub builds: usize,
-}
-
-#[derive(Deserialize)]
-struct File {
-    workload: Option<String>,
-    frames: Option<usize>,
-    passes: usize,
-    warmup: usize,
-    #[serde(default)]
-    threads: usize,
-    #[serde(default = "once")]
-    builds: usize,
-    #[serde(default)]
-    part: Vec<FilePart>,
-    #[serde(flatten)]
-    axes: BTreeMap<String, Values>,
-}
-
-#[derive(Deserialize)]
-struct FilePart {
-    frames: Option<usize>,
-    #[serde(flatten)]
-    axes: BTreeMap<String, Values>,
-}
-
-/// One value or a list; numbers count as text.
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum Values {
-    One(Scalar),
-    Many(Vec<Scalar>),
-}
-
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum Scalar {
-    Integer(i64),
-    Text(String),
-}
-
-fn once() -> usize {
-    1
-}
-
-impl Values {
-    fn texts(self) -> Vec<String> {
-        let text = |scalar| match scalar {
-            Scalar::Integer(number) => number.to_string(),
-            Scalar::Text(text) => text,
-        };
-        match self {
-            Values::One(value) => vec![text(value)],
-            Values::Many(values) => values.into_iter().map(text).collect(),
-        }
-    }
 }
 
 impl Preset {
@@ -105,32 +50,117 @@ impl Preset {
     }
 
     fn parse(info: &Info, name: &str, text: &str) -> Result<Preset> {
-        let example = format!("see presets/{}/{}.toml", info.name, info.presets.first().map_or("", |(name, _)| name));
-        let wrong = |line: Option<usize>, problem: String| Error::file(Path::new(name), line, problem, &example);
-        let file: File = toml::from_str(text).map_err(|e| {
+        let text = text.trim_start_matches('\u{feff}');
+        let file = File {
+            info,
+            path: Path::new(name),
+            text,
+            example: format!("see presets/{}/{}.toml", info.name, info.presets.first().map_or("", |(name, _)| name)),
+        };
+        let mut table: Table = toml::from_str(text).map_err(|e| {
             let line = e.span().map(|span| 1 + text[..span.start].matches('\n').count());
-            wrong(line, e.message().replace('\n', ", "))
+            file.wrong(line, e.message().replace('\n', ", "))
         })?;
-        if let Some(other) = file.workload.filter(|workload| workload != info.name) {
-            let problem = format!("a preset of the workload {other}, not of {}", info.name);
-            return Err(wrong(line_of(text, "workload"), problem));
+        let tables = match table.remove("part") {
+            None => Vec::new(),
+            Some(value) => value.try_into::<Vec<Table>>().map_err(|_| {
+                file.wrong(file.line_of("part", 0), "part is no list of tables: write [[part]]".to_owned())
+            })?,
+        };
+        let mut numbers = BTreeMap::new();
+        for key in NUMBERS {
+            numbers.insert(key, table.remove(key).map(|value| file.number(key, &value, 0)).transpose()?);
         }
-        let part = |axes: BTreeMap<String, Values>, frames| {
-            for key in axes.keys() {
-                if !info.axes.iter().any(|axis| axis.is_flag && axis.name == key) {
-                    return Err(wrong(line_of(text, key), unknown(info, key)));
+        if let Some(value) = table.remove("workload") {
+            match value.as_str() {
+                Some(other) if other == info.name => {}
+                other => {
+                    let other = other.map_or(value.to_string(), str::to_owned);
+                    let problem = format!("a preset of the workload {other}, not of {}", info.name);
+                    return Err(file.wrong(file.line_of("workload", 0), problem));
                 }
             }
-            let values = axes.into_iter().map(|(axis, values)| (axis, values.texts())).collect();
-            Ok(Part { values, frames })
-        };
-        let common = part(file.axes, file.frames)?;
-        let mut parts = file.part.into_iter().map(|p| part(p.axes, p.frames)).collect::<Result<Vec<Part>>>()?;
+        }
+        let common = file.part(table, 0)?;
+        let parts = tables.into_iter().enumerate().map(|(index, table)| file.part(table, index + 1));
+        let mut parts = parts.collect::<Result<Vec<Part>>>()?;
         if parts.is_empty() {
             parts.push(Part::default());
         }
-        let (passes, warmup, threads, builds) = (file.passes, file.warmup, file.threads, file.builds);
-        Ok(Preset { name: name.to_owned(), common, parts, passes, warmup, threads, builds })
+        let number = |key: &str| numbers.get(key).copied().flatten();
+        let needed = |key: &str| number(key).ok_or_else(|| file.wrong(None, format!("{key} is not set")));
+        Ok(Preset {
+            name: name.to_owned(),
+            common,
+            parts,
+            passes: needed("passes")?,
+            warmup: needed("warmup")?,
+            threads: number("threads").unwrap_or(0),
+            builds: number("builds").unwrap_or(1),
+        })
+    }
+}
+
+/// Keys of a preset with a number, besides `frames`.
+const NUMBERS: [&str; 4] = ["passes", "warmup", "threads", "builds"];
+
+/// A preset's file while it is read.
+struct File<'a> {
+    info: &'a Info,
+    path: &'a Path,
+    text: &'a str,
+    example: String,
+}
+
+impl File<'_> {
+    fn wrong(&self, line: Option<usize>, problem: String) -> Error {
+        Error::file(self.path, line, problem, &self.example)
+    }
+
+    /// The values of one table: 0 is the file's own, 1 its first part.
+    fn part(&self, mut table: Table, index: usize) -> Result<Part> {
+        let frames = table.remove("frames").map(|value| self.number("frames", &value, index)).transpose()?;
+        let mut values = BTreeMap::new();
+        for (key, value) in table {
+            if !self.info.axes.iter().any(|axis| axis.is_flag && axis.name == key) {
+                return Err(self.wrong(self.line_of(&key, index), unknown(self.info, &key)));
+            }
+            let texts = match &value {
+                Value::Array(items) if !items.is_empty() => items.iter().map(text_of).collect(),
+                single => text_of(single).map(|text| vec![text]),
+            };
+            let problem = || format!("{key} = {value} is no text, whole number or list of them");
+            let texts: Vec<String> = texts.ok_or_else(|| self.wrong(self.line_of(&key, index), problem()))?;
+            values.insert(key, texts);
+        }
+        Ok(Part { values, frames })
+    }
+
+    fn number(&self, key: &str, value: &Value, index: usize) -> Result<usize> {
+        let number = value.as_integer().and_then(|number| usize::try_from(number).ok());
+        let problem = || format!("{key} = {value} is no whole number");
+        number.ok_or_else(|| self.wrong(self.line_of(key, index), problem()))
+    }
+
+    /// The line, counted from 1, that sets a key of a table, or where its table begins.
+    fn line_of(&self, key: &str, index: usize) -> Option<usize> {
+        let is_part = |line: &str| line.trim_start().starts_with("[[part]]");
+        let mut before = 0;
+        let sets = |line: &str| {
+            before += usize::from(is_part(line));
+            let line = line.trim_start().trim_start_matches('[');
+            before == index && line.strip_prefix(key).is_some_and(|rest| rest.trim_start().starts_with(['=', ']']))
+        };
+        self.text.lines().position(sets).map(|line| line + 1)
+    }
+}
+
+/// Text or whole number, as a user would type it.
+fn text_of(value: &Value) -> Option<String> {
+    match value {
+        Value::String(text) => Some(text.clone()),
+        Value::Integer(number) => Some(number.to_string()),
+        _ => None,
     }
 }
 
@@ -142,18 +172,10 @@ fn unknown(info: &Info, key: &str) -> String {
         "structures" | "configs" | "resolutions" => format!("the key {key} is called {} now", &key[..key.len() - 1]),
         "warmup_frames" => "the key warmup_frames is called warmup now".to_owned(),
         "build_threads" => "the key build_threads is called threads now".to_owned(),
+        "scene" => "[[scene]] is called [[part]] now".to_owned(),
         _ => format!(
             "unknown key {key}; there are {}, frames, passes, warmup, threads, builds, workload and [[part]]",
             axes.join(", ")
         ),
     }
-}
-
-/// The first line that sets a key or begins its table.
-fn line_of(text: &str, key: &str) -> Option<usize> {
-    let sets = |line: &str| {
-        let line = line.trim_start().trim_start_matches('[');
-        line.strip_prefix(key).is_some_and(|rest| rest.trim_start().starts_with(['=', ']']))
-    };
-    text.lines().position(sets).map(|index| index + 1)
 }

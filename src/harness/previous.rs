@@ -1,6 +1,7 @@
 //! Rows of earlier sessions of the same run. Rows of different programs, devices or inputs must never be in one table:
 //! a run is resumed only if nothing of that differs.
 
+use super::workload::{Case, Info};
 use crate::error::{Error, Result};
 use crate::record::journal::{FILE_NAME, Journal};
 use crate::record::row::{Input, Key, Row};
@@ -74,10 +75,11 @@ impl PreviousRun {
         let devices = |p: &Provenance| p.devices.iter().map(|device| device.info.clone()).collect::<Vec<_>>();
         let what = if before.program != now.program {
             let (before, now) = (revision(before), revision(now));
-            format!("another build of the program ({before}) than this one ({now}) measured it")
+            let difference = if before == now { "with other sources or settings, " } else { "" };
+            format!("another build of the program ({difference}{before}) than this one ({now}) measured it")
         } else if devices(before) != devices(now) {
             let names = |p: &Provenance| {
-                let names = p.devices.iter().map(|d| format!("{} {}", d.info.name, d.info.driver).trim().to_owned());
+                let names = p.devices.iter().map(|device| device.info.with_driver());
                 names.collect::<Vec<_>>().join(", ")
             };
             format!("it was measured on {}, not on {}, or with other switches", names(before), names(now))
@@ -122,7 +124,16 @@ impl PreviousRun {
 
     /// True if an input has been recorded.
     pub fn has_input(&self, input: &Input) -> bool {
-        self.inputs().contains(input)
+        self.inputs()
+            .iter()
+            .any(|known| (&known.kind, &known.name, &known.hash) == (&input.kind, &input.name, &input.hash))
+    }
+
+    /// True if there is a row whose input was the one that a case needs, and could be opened.
+    pub fn has_opened(&self, info: &Info, case: &Case) -> bool {
+        let subject = info.axes.first().map_or("", |axis| axis.name);
+        let mut rows = self.journal.iter().flat_map(|journal| &journal.rows);
+        rows.any(|row| !row.key.inputs.is_empty() && row.key.axis(subject) == case.axis(subject))
     }
 
     /// Keys of the artifacts that have been recorded.

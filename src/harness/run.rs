@@ -8,14 +8,14 @@ use super::plan::Plan;
 use super::previous::PreviousRun;
 use super::summary;
 use super::workload::{Case, Context, Event, Input, Run, Workload};
-use crate::device::Device;
+use crate::device::{Device, DeviceInfo};
 use crate::error::{Error, Result};
 use crate::record::journal::Record;
 use crate::record::journal::{self, Journal, JournalWriter};
 use crate::record::row::{Artifact, Key, Row, SCHEMA, Status};
 use crate::record::run::{DeviceRecord, End, Provenance, Resumed};
 use std::cell::RefCell;
-use std::collections::VecDeque;
+use std::collections::{HashSet, VecDeque};
 use std::path::Path;
 
 /// Artifacts are built until this many bytes wait to be brought to the device together.
@@ -110,7 +110,7 @@ pub fn run(job: Job) -> Result<Outcome> {
     let mut runner = Runner {
         workload: job.workload,
         context: &context,
-        names: job.devices.iter().map(|opened| opened.device.info().name.clone()).collect(),
+        infos: job.devices.iter().map(|opened| opened.device.info().clone()).collect(),
         devices: job.devices.into_iter().map(Some).collect(),
         open: job.open,
         artifacts: job.previous.artifacts(),
@@ -149,7 +149,7 @@ pub(super) struct Runner<'a, 'j> {
     pub(super) context: &'a Context<'a>,
     /// `None` after it was lost, until something needs it again.
     devices: Vec<Option<Opened>>,
-    names: Vec<String>,
+    infos: Vec<DeviceInfo>,
     open: &'a dyn Fn(usize) -> Result<Opened>,
     previous: PreviousRun,
     /// Keys of the artifacts that have been recorded.
@@ -169,7 +169,9 @@ impl<'a> Runner<'a, '_> {
         let Some(first) = cases.first() else { return Ok(()) };
         let mut input = match opened.map_or_else(|| open(self.workload, self.context, cases), Ok) {
             Ok(input) => input,
-            Err(error @ Error::Input(_)) => {
+            // There are rows of it already: what is missing must be put back first
+            Err(error @ Error::Input(_)) if self.previous.has_opened(self.workload.info(), first) => return Err(error),
+            Err(error) => {
                 let error = failure(error)?;
                 let workload = self.workload.info().name.to_owned();
                 for case in cases {
@@ -178,7 +180,6 @@ impl<'a> Runner<'a, '_> {
                 }
                 return Ok(());
             }
-            Err(error) => return Err(error),
         };
         for warning in input.warnings() {
             self.context.emit(Event::Note(format!("{}: {warning}", first.input)));
@@ -204,7 +205,14 @@ impl<'a> Runner<'a, '_> {
     /// input for comparison.
     fn pending(&mut self, input: &dyn Input, cases: &[Case]) -> Vec<Pending> {
         let mut groups: Vec<Pending> = Vec::new();
+        let mut keys = HashSet::new();
         for case in cases {
+            if !keys.insert((input.key(case), case.device)) {
+                // Two spellings of one case
+                self.context.emit(Event::Note(format!("{} {} is in the plan twice", case.input, case.group)));
+                self.context.emit(Event::Kept(case.work));
+                continue;
+            }
             if let Some(row) = self.previous.row(&input.key(case), case.device) {
                 input.remember(case, row);
                 self.context.emit(Event::Kept(case.work));
@@ -271,11 +279,13 @@ impl<'a> Runner<'a, '_> {
             taken.push(match device {
                 Some(device) => device,
                 None => {
-                    self.context.emit(Event::Note("the device was lost and is opened again".into()));
+                    let name = &self.infos[index].name;
+                    self.context.emit(Event::Note(format!("{name} was lost and is opened again")));
                     let device =
                         (self.open)(index).map_err(|e| Error::DeviceLost(format!("it cannot be opened again: {e}")))?;
-                    let (before, now) = (&self.names[index], &device.device.info().name);
+                    let (before, now) = (&self.infos[index], device.device.info());
                     if now != before {
+                        let (before, now) = (before.with_driver(), now.with_driver());
                         return Err(Error::DeviceLost(format!("{before} did not come back, there is only {now}")));
                     }
                     device

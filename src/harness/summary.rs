@@ -8,7 +8,7 @@ use crate::device::DeviceType;
 use crate::error::{Error, Result};
 use crate::record::files;
 use crate::record::journal::Journal;
-use crate::record::row::{Row, Status, Value};
+use crate::record::row::{Row, Samples, Status, TimingSource, Value};
 use crate::record::statistics;
 use crate::record::terminal;
 use std::path::Path;
@@ -54,6 +54,7 @@ impl Wide {
             .chain(info.columns.iter().copied())
             .map(str::to_owned)
             .chain(stages.iter().map(|stage| format!("{}_ms_mean", stage.replace('-', "_"))))
+            .chain((!stages.is_empty()).then(|| BETWEEN_STAGES.to_owned()))
             .chain(RESULT.map(str::to_owned))
             .collect();
         let rows = sorted(workload, journal).into_iter().map(|row| {
@@ -157,7 +158,11 @@ impl<'j> Values<'j> {
                 Some(format!("{source:?}").to_lowercase().into())
             }
             "wall_ms_mean" => mean_of(&samples?.wall_ns),
-            "device_ms_mean" => mean_of(samples?.device_ns.as_deref()?),
+            // Broken timestamps are not shown
+            "device_ms_mean" if row.timing_source == Some(TimingSource::Device) => {
+                mean_of(samples?.device_ns.as_deref()?)
+            }
+            "device_ms_mean" => None,
             "pass_overhead" => {
                 let frames: u64 = row.timed()?.iter().flatten().sum();
                 let passes: u64 = samples?.pass_ns.iter().sum();
@@ -171,9 +176,9 @@ impl<'j> Values<'j> {
             }
             "shader_checks" => {
                 let checked = device.is_some_and(|device| device.checked) || row.kernels.iter().any(|k| k.checked);
-                Some(checked.to_string().into())
+                Some(checked.into())
             }
-            "verified" => Some((row.status == Status::Ok).to_string().into()),
+            "verified" => Some((row.status == Status::Ok).into()),
             "status" => Some(row.status.word().into()),
             "message" => (!row.message.is_empty()).then(|| row.message.as_str().into()),
             "warnings" => (!row.warnings.is_empty()).then(|| row.warnings.join("; ").into()),
@@ -197,7 +202,11 @@ impl<'j> Values<'j> {
         if let Some(metric) = kinds.flat_map(|input| &input.metrics).find(|metric| metric.column() == column) {
             return Some(metric.value.clone());
         }
-        let samples = row.samples.as_ref().filter(|_| row.status == Status::Ok)?;
+        let by_device = row.status == Status::Ok && row.timing_source == Some(TimingSource::Device);
+        let samples = row.samples.as_ref().filter(|_| by_device)?;
+        if column == BETWEEN_STAGES {
+            return between_stages(samples);
+        }
         let stage = samples.stages.iter().position(|stage| format!("{}_ms_mean", stage.replace('-', "_")) == column)?;
         let stage_ns = samples.stage_ns.as_ref()?;
         let of_stage: Option<Vec<Vec<u64>>> = stage_ns
@@ -206,6 +215,18 @@ impl<'j> Values<'j> {
             .collect();
         statistics::frames(&of_stage?).map(|frames| statistics::round(frames.mean_ms, 6).into())
     }
+}
+
+/// The time of a frame that is in none of its stages.
+const BETWEEN_STAGES: &str = "between_stages_ms_mean";
+
+fn between_stages(samples: &Samples) -> Option<Value> {
+    let (whole, stages) = (samples.device_ns.as_ref()?, samples.stage_ns.as_ref()?);
+    let rest = |(whole, stages): (&Vec<u64>, &Vec<Vec<u64>>)| -> Vec<u64> {
+        whole.iter().zip(stages).map(|(&frame, stages)| frame.saturating_sub(stages.iter().sum())).collect()
+    };
+    let rest: Vec<Vec<u64>> = whole.iter().zip(stages).map(rest).collect();
+    statistics::frames(&rest).map(|frames| statistics::round(frames.mean_ms, 6).into())
 }
 
 /// Writes `summary.csv`, `run.json` and the workload's own files into a run's folder, each whole or not at all.
@@ -324,6 +345,7 @@ fn table(workload: &dyn Workload, journal: &Journal, rows: &[&Row]) -> String {
                 },
                 _ => match values.get(column) {
                     Some(Value::Text(text)) => text,
+                    Some(Value::Flag(flag)) => flag.to_string(),
                     number => terminal::number(number.and_then(|value| value.number())),
                 },
             };

@@ -91,7 +91,8 @@ impl Runner<'_, '_> {
             context.emit(Event::Doing(format!("timing {count} cases such as {}", label(&first.case))));
         }
         let passes = context.settings.passes;
-        let mut lost = None;
+        // What ends the timing of all cases
+        let mut ended = None;
         'passes: for pass in 0..passes {
             for index in order(count, pass) {
                 let TimedCase { case, run, samples, broken, .. } = &mut timed[index];
@@ -100,23 +101,30 @@ impl Runner<'_, '_> {
                 }
                 match measure::pass(*run, case, context.settings.warmup_frames, samples) {
                     Ok(()) => context.emit(Event::Work(case.work / (passes as u64 + 1))),
+                    Err(Error::Interrupted) => {
+                        ended = Some(Error::Interrupted);
+                        break 'passes;
+                    }
                     Err(error) => {
-                        let device = matches!(error, Error::DeviceLost(_)).then_some(case.device);
+                        let is_lost = matches!(error, Error::DeviceLost(_));
                         *broken = Some(error);
-                        if device.is_some() {
-                            lost = device;
+                        if is_lost {
                             break 'passes;
                         }
                     }
                 }
             }
         }
+        let is_lost = |error: &Error| matches!(error, Error::DeviceLost(_));
+        let lost_by = |case: &TimedCase| case.broken.as_ref().is_some_and(is_lost).then_some(case.case.device);
+        let mut lost = timed.iter().find_map(lost_by);
         for TimedCase { group, case, run, mut row, samples, broken } in timed {
             row.interleaved_with = count;
+            let is_whole = samples.wall_ns.len() == passes && lost != Some(case.device);
             let finished = match broken {
                 Some(error) => Err(error),
-                // Its passes are incomplete: it is measured again on the new device
-                None if lost.is_some() => {
+                // It is measured again, on the device that is opened in place of the lost one or by a resumed run
+                None if !is_whole => {
                     groups[group].push_front(case);
                     continue;
                 }
@@ -124,15 +132,20 @@ impl Runner<'_, '_> {
             };
             match finished {
                 Ok(()) => self.finish(row)?,
+                Err(Error::Interrupted) => ended = Some(Error::Interrupted),
                 Err(error) => {
-                    if matches!(error, Error::DeviceLost(_)) {
+                    if is_lost(&error) {
                         lost = Some(case.device);
                     }
-                    self.without_result(row, &failure(error)?)?;
+                    match failure(error) {
+                        Ok(failure) => self.without_result(row, &failure)?,
+                        // Not about this case: the others are recorded before it ends the run
+                        Err(error) => ended = Some(error),
+                    }
                 }
             }
         }
-        Ok(lost)
+        ended.map_or(Ok(lost), Err)
     }
 
     /// A row with everything that is known before anything is measured.

@@ -78,6 +78,10 @@ fn temp_path(path: &Path) -> PathBuf {
 /// # Errors
 /// [`Error::Output`] if it cannot be created, [`Error::Input`] if something is in it.
 pub fn create_run_folder(path: &Path) -> Result<()> {
+    if path.exists() && !path.is_dir() {
+        let problem = format!("{} is no folder", path.display());
+        return Err(Error::argument("--out", problem, "give a new folder"));
+    }
     fs::create_dir_all(path).map_err(|source| Error::output(path, source))?;
     let mut entries = fs::read_dir(path).map_err(|source| Error::output(path, source))?;
     if entries.next().is_some() {

@@ -73,7 +73,7 @@ impl JournalWriter {
     /// is the number of bytes that the caller has read of it.
     ///
     /// # Errors
-    /// [`Error::Output`], or [`Error::Input`] if another sweep is writing it or has written to it since.
+    /// [`Error::Output`], or [`Error::Input`] if another process is writing it or has written to it since.
     pub fn resume(folder: &Path, resumed: Resumed, known: u64) -> Result<JournalWriter> {
         let path = folder.join(FILE_NAME);
         let output = |source| Error::output(&path, source);
@@ -84,7 +84,14 @@ impl JournalWriter {
         if bytes.len() as u64 != known {
             return Err(being_written(&path));
         }
-        let length = bytes.iter().rposition(|&b| b == b'\n').map_or(0, |end| end as u64 + 1);
+        let end = bytes.iter().rposition(|&b| b == b'\n').map_or(0, |end| end + 1);
+        let length = if end < bytes.len() && serde_json::from_slice::<Record>(&bytes[end..]).is_ok() {
+            // A whole record that only lacks the end of its line: readers take it, so it is kept
+            file.write_all(b"\n").map_err(output)?;
+            bytes.len() as u64 + 1
+        } else {
+            end as u64
+        };
         file.set_len(length).map_err(output)?;
         let mut writer = JournalWriter { path, file, length };
         writer.write(&Record::Resumed(Box::new(resumed)))?;
@@ -130,7 +137,7 @@ fn lock(path: &Path, file: &File) -> Result<()> {
 }
 
 fn being_written(path: &Path) -> Error {
-    Error::file(path, None, "another sweep is writing this run", "wait until it is done, or stop it first")
+    Error::file(path, None, "another process is writing this run", "wait until it is done, or stop it first")
 }
 
 /// A journal, read back.
@@ -159,9 +166,7 @@ pub struct Journal {
 /// # Errors
 /// [`Error::Input`] if it cannot be read.
 pub fn bytes_of(path: &Path) -> Result<Vec<u8>> {
-    std::fs::read(path).map_err(|e| {
-        Error::file(path, None, format!("cannot read: {e}"), "give the folder of a run, as `rtbench sweep` writes it")
-    })
+    std::fs::read(path).map_err(|e| Error::file(path, None, format!("cannot read: {e}"), "give the folder of a run"))
 }
 
 /// The lines of a journal with their numbers, and what had to be left out.
@@ -183,7 +188,10 @@ pub fn lines<T>(path: &Path, bytes: &[u8], parse: impl Fn(&[u8]) -> serde_json::
             }
             Err(e) => {
                 let hint = "it is no journal of rtbench, or it was edited";
-                return Err(Error::file(path, Some(number), format!("not a record: {e}"), hint));
+                // The record is one line: the parser's own position would be another number
+                let text = e.to_string();
+                let problem = text.rsplit_once(" at line ").map_or(&*text, |(problem, _)| problem);
+                return Err(Error::file(path, Some(number), format!("not a record: {problem}"), hint));
             }
         }
     }
@@ -216,7 +224,12 @@ impl Journal {
     pub fn parse(path: &Path, bytes: &[u8]) -> Result<Journal> {
         if let Some(other) = schema_of(bytes).filter(|schema| schema != SCHEMA) {
             let problem = format!("schema {other:?} instead of {SCHEMA:?}");
-            return Err(Error::file(path, Some(1), problem, "read it with the version that wrote it"));
+            return Err(Error::file(
+                path,
+                Some(1),
+                problem,
+                "tables and reports read it; a run is resumed by the version that began it",
+            ));
         }
         let (records, truncated) = lines(path, bytes, |line| serde_json::from_slice::<Record>(line))?;
         let mut records = records.into_iter();
@@ -262,7 +275,8 @@ impl Journal {
                     journal.resumed.push(*resumed);
                     journal.end = None;
                     // Without an input their keys are not complete; the resumed run tries them again
-                    journal.rows.retain(|row| row.status != Status::Failed || !row.key.inputs.is_empty());
+                    let no_result = |row: &Row| matches!(row.status, Status::Failed | Status::Skipped);
+                    journal.rows.retain(|row| !(no_result(row) && row.key.inputs.is_empty()));
                     let rows = journal.rows.iter().enumerate();
                     known = rows.map(|(index, row)| ((row.key.clone(), row.device), index)).collect();
                 }
@@ -274,6 +288,7 @@ impl Journal {
     /// The input of a kind that a key names.
     pub fn input(&self, key: &Key, kind: &str) -> Option<&Input> {
         let hash = key.inputs.get(kind)?;
-        self.inputs.iter().find(|input| input.kind == kind && input.hash == *hash)
+        let same = || self.inputs.iter().filter(|input| input.kind == kind && input.hash == *hash);
+        same().find(|input| input.name == key.axis(kind)).or_else(|| same().next())
     }
 }

@@ -63,6 +63,8 @@ pub struct Metric {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Value {
+    /// Yes or no.
+    Flag(bool),
     /// A count, a number of bytes.
     Integer(u64),
     /// A finite number.
@@ -90,8 +92,15 @@ impl From<u32> for Value {
 }
 
 impl From<f64> for Value {
+    /// What is not finite becomes text, since JSON has no such numbers.
     fn from(value: f64) -> Value {
-        Value::Number(value)
+        if value.is_finite() { Value::Number(value) } else { Value::Text(value.to_string()) }
+    }
+}
+
+impl From<bool> for Value {
+    fn from(value: bool) -> Value {
+        Value::Flag(value)
     }
 }
 
@@ -111,6 +120,7 @@ impl Value {
     /// As text, in its shortest form that reads back to the same value.
     pub fn write(&self) -> String {
         match self {
+            Value::Flag(value) => value.to_string(),
             Value::Integer(value) => value.to_string(),
             Value::Number(value) => value.to_string(),
             Value::Text(text) => text.clone(),
@@ -122,7 +132,7 @@ impl Value {
         match self {
             Value::Integer(value) => Some(*value as f64),
             Value::Number(value) => Some(*value),
-            Value::Text(_) => None,
+            Value::Flag(_) | Value::Text(_) => None,
         }
     }
 

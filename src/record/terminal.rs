@@ -38,3 +38,8 @@ pub(crate) fn number(value: Option<f64>) -> String {
 pub(crate) fn mib(bytes: u64) -> String {
     format!("{:.2}", bytes as f64 / (1024.0 * 1024.0))
 }
+
+/// A number of things: `1 case`, `2 cases`.
+pub(crate) fn counted(number: usize, one: &str, several: &str) -> String {
+    format!("{number} {}", if number == 1 { one } else { several })
+}

@@ -31,7 +31,8 @@ impl RecordedRun {
         }
         let run = record::read(&journal)?;
         if run.structures.is_empty() && run.configurations.is_empty() {
-            return Err(Error::file(&journal, None, "nothing was measured", "the run ended before its first result"));
+            let problem = "no case of it has a result";
+            return Err(Error::file(&journal, None, problem, "leave it out, or resume it: its rows say what failed"));
         }
         Ok(RecordedRun { journal: run, folder })
     }

@@ -403,6 +403,32 @@ fn a_run_is_taken_up_where_it_was_interrupted() {
     assert!(previous.is_complete() && previous.done() == 4);
 }
 
+/// Some editors and short writes take the end of the last line.
+#[test]
+fn a_whole_last_line_without_its_end_is_kept() {
+    for kept in [1, 2, 3] {
+        let first = swept(Fault::None, usize::MAX, &back);
+        let path = first.folder.path().join(FILE_NAME);
+        let text = std::fs::read_to_string(&path).unwrap();
+        let rows = text.lines().enumerate().filter(|(_, line)| line.starts_with("{\"record\":\"row\""));
+        let last = rows.map(|(index, _)| index).nth(kept - 1).unwrap();
+        let cut: Vec<&str> = text.lines().take(last + 1).collect();
+        std::fs::write(&path, cut.join("\n")).unwrap();
+        let previous = PreviousRun::read(first.folder.path()).unwrap();
+        assert_eq!(previous.done(), kept);
+        let second = sweep_into(first.folder, &plan(), previous, Fault::None, usize::MAX, &back);
+        assert_eq!((second.outcome.unwrap().journal.rows.len(), second.finished), (4, 4 - kept));
+    }
+    // The first line as well
+    let first = swept(Fault::None, 1, &back);
+    let path = first.folder.path().join(FILE_NAME);
+    let text = std::fs::read_to_string(&path).unwrap();
+    std::fs::write(&path, text.lines().next().unwrap()).unwrap();
+    let previous = PreviousRun::read(first.folder.path()).unwrap();
+    let second = sweep_into(first.folder, &plan(), previous, Fault::None, usize::MAX, &back);
+    assert_eq!(second.outcome.unwrap().journal.rows.len(), 4);
+}
+
 #[test]
 fn a_row_that_lost_the_device_is_tried_again_and_a_wrong_one_is_not() {
     let plan = plan();
@@ -467,7 +493,7 @@ fn a_run_that_is_being_written_is_not_taken_up() {
         let second = sweep_into(folder, &plan, previous, Fault::None, usize::MAX, &back);
         let error = second.outcome.unwrap_err();
         assert!(matches!(error, Error::Input(_)), "{error}");
-        assert!(error.to_string().contains("another sweep is writing this run"), "{error}");
+        assert!(error.to_string().contains("another process is writing this run"), "{error}");
         second.folder
     };
     let writer = std::fs::File::open(&path).unwrap();
@@ -530,6 +556,60 @@ fn a_scene_that_the_preset_names_keeps_its_own_parts() {
 }
 
 #[test]
+fn a_part_sets_what_holds_for_its_scene_also_where_the_scene_is_common() {
+    let file = preset_file(
+        "scene = [\"hall\", \"scan\"]\nstructure = \"grid\"\nresolution = 64\npasses = 1\nwarmup = 0\n\
+        [[part]]\nconfig = [\"PS\"]\n",
+    );
+    for scene in ["hall", "scan"] {
+        let mut request = of_preset(&file);
+        request.values = values(&[("scene", &[scene])]);
+        let plan = Plan::new(&TRACE, &request).unwrap();
+        assert_eq!((&plan.axes()["scene"], &plan.axes()["config"]), (&vec![scene.to_owned()], &vec!["PS".to_owned()]));
+    }
+}
+
+#[test]
+fn an_absent_scene_does_not_take_others_with_it() {
+    let file = preset_file(
+        "\u{feff}scene = [\"bunny\", \"hall\"]\nstructure = \"grid\"\nconfig = \"P\"\nresolution = 64\npasses = 1\nwarmup = 0\n",
+    );
+    let nowhere = tempfile::tempdir().unwrap();
+    let library = Library { scenes_folder: Some(nowhere.path().into()), scene_time: None };
+    let plan = Plan::new(&TRACE, &Request { library, ..of_preset(&file) }).unwrap();
+    assert_eq!((plan.axes()["scene"].clone(), plan.absent.len()), (vec!["hall".to_owned()], 1));
+}
+
+/// What is left out is said.
+#[test]
+fn cases_that_differ_in_their_frames_only() {
+    let file = preset_file(
+        "scene = \"hall\"\nconfig = \"P\"\nresolution = 64\npasses = 1\nwarmup = 0\n\
+        [[part]]\nstructure = \"grid\"\nframes = 2\n[[part]]\nstructure = [\"grid\", \"bvh\"]\nframes = 1\n",
+    );
+    let plan = Plan::new(&TRACE, &of_preset(&file)).unwrap();
+    let cases: Vec<_> = plan.cases.iter().map(|case| (case.axis("structure"), case.axis("frames"))).collect();
+    assert_eq!(cases, [("grid", "2"), ("bvh", "1")]);
+    assert!(plan.notes.len() == 1 && plan.notes[0].contains("1 cases"), "{:?}", plan.notes);
+}
+
+#[test]
+fn camera_paths_are_an_axis() {
+    let mut request = request();
+    request.values.insert("camera_path".into(), vec!["orbit".into(), "light-orbit".into()]);
+    request.values.insert("structure".into(), vec!["grid".into()]);
+    let plan = Plan::new(&TRACE, &request).unwrap();
+    assert_eq!(plan.axes()["camera_path"], ["orbit", "light-orbit"]);
+    let folder = tempfile::tempdir().unwrap();
+    let swept = sweep_into(folder, &plan, PreviousRun::default(), Fault::None, usize::MAX, &back);
+    let rows = swept.outcome.unwrap().journal.rows;
+    assert_eq!((rows.len(), rows.iter().filter(|row| row.status == Status::Ok).count()), (4, 4));
+    let keys: std::collections::HashSet<_> = rows.iter().map(|row| &row.key).collect();
+    let images: std::collections::HashSet<_> = rows.iter().map(|row| format!("{:?}", row.outputs)).collect();
+    assert_eq!((keys.len(), images.len()), (4, 4));
+}
+
+#[test]
 fn mistakes_in_presets_are_located() {
     let good = "structure = [\"grid\"]\nconfig = \"P\"\nresolution = 64\npasses = 1\nwarmup = 0\n";
     let wrong = |text: &str, words: &[&str]| {
@@ -542,7 +622,20 @@ fn mistakes_in_presets_are_located() {
         &format!("{good}structures = [\"bvh\"]\n"),
         &[".toml:6: ", "called structure now", "presets/sweep/quick.toml"],
     );
-    wrong(&format!("{good}[[scene]]\nscene = \"hall\"\n"), &[".toml:"]);
+    wrong(&format!("{good}[[scene]]\nscene = \"hall\"\n"), &[".toml:6: [[scene]] is called [[part]] now"]);
+    wrong(&good.replace("warmup", "warmup_frames"), &[".toml:5: ", "called warmup now"]);
+    wrong(&format!("{good}[[part]]\nscene = \"hall\"\nwarmup_frames = 1\n"), &[".toml:8: ", "called warmup now"]);
+    for value in ["true", "{ a = 1 }", "[[\"grid\"]]", "[16.5]", "[]"] {
+        let text = good.replace("64", value);
+        wrong(&format!("{text}[[part]]\nscene = \"hall\"\n"), &[".toml:3: resolution = "]);
+        wrong(&format!("{good}[[part]]\nscene = {value}\n"), &[".toml:7: scene = "]);
+        wrong(&good.replace("passes = 1", &format!("passes = {value}")), &[".toml:4: passes = "]);
+    }
+    wrong(&format!("{good}part = 5\n"), &[".toml:6: ", "[[part]]"]);
+    wrong(&good.replace("passes = 1\n", ""), &["passes is not set"]);
+    // A part without a scene, next to a good one
+    wrong(&format!("{good}[[part]]\nscene = \"hall\"\n[[part]]\nframes = 1\n"), &["--scene", "no scene is given"]);
+    wrong(&good.replace("config = \"P\"\n", "scene = \"hall\"\n"), &["--config", "no config is given"]);
     wrong(&format!("{good}workload = \"spheres\"\n"), &[".toml:6: ", "of the workload spheres, not of sweep"]);
     wrong(&format!("{good}[[part]]\nscene = \"hall\"\ncolour = \"red\"\n"), &[".toml:8: unknown key colour", "scene"]);
     wrong(&format!("{good}build = \"x\"\n"), &["unknown key build"]);

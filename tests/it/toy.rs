@@ -16,6 +16,8 @@ use std::sync::Mutex;
 struct Sums {
     /// What was run, in this order: device, method, `warm` or `pass`.
     log: Mutex<Vec<String>>,
+    /// Number of calls before one is interrupted, or loses its device.
+    stop: Option<(usize, fn() -> Error)>,
 }
 
 const fn axis(name: &'static str) -> Axis {
@@ -135,7 +137,12 @@ impl Run for Summed<'_> {
     fn pass(&mut self, case: &Case, warm_up: Option<usize>) -> Result<Vec<FrameTime>> {
         let what = if warm_up.is_some() { "warm" } else { "pass" };
         let line = format!("{} {} {what}", self.device.info().name, case.group);
-        self.input.workload.log.lock().unwrap().push(line);
+        let mut log = self.input.workload.log.lock().unwrap();
+        if let Some((_, error)) = self.input.workload.stop.filter(|(calls, _)| *calls == log.len()) {
+            log.push("stop".into());
+            return Err(error());
+        }
+        log.push(line);
         let frame = FrameTime { wall_ns: 50, device_ns: Some(40), stages: vec![10, 25] };
         Ok(vec![frame; warm_up.unwrap_or(4)])
     }
@@ -158,7 +165,7 @@ fn measured(workload: &Sums, folder: &std::path::Path, rows: usize) -> (Result<O
         previous,
         arguments: vec![],
         devices: vec![device("first"), device("second")],
-        open: &|_| unreachable!(),
+        open: &|index| Ok(device(["first", "second"][index])),
         interrupted: &|| finished.get() >= rows,
         watch: &mut |event| {
             if let Event::Finished(_) = event {
@@ -223,4 +230,36 @@ fn it_is_resumed_like_any_other() {
     assert_eq!((outcome.unwrap().journal.rows.len(), finished + again), (16, 16));
     let journal = Journal::read(&folder.path().join(FILE_NAME)).unwrap();
     assert_eq!((journal.resumed.len(), journal.inputs.len(), journal.artifacts.len()), (1, 2, 6));
+}
+
+/// Whatever stops the timing of a turn, what has all of its passes by then is a row.
+#[test]
+fn cases_with_all_passes_are_kept() {
+    // Passes run forwards, then backwards, each after a call to warm up: two of four cases are complete after 12 calls
+    for (error, rows) in [(Error::Interrupted, 2 + 4), (Error::DeviceLost("the driver reset".into()), 2 + 4)] {
+        let stop: fn() -> Error = match error {
+            Error::Interrupted => || Error::Interrupted,
+            _ => || Error::DeviceLost("the driver reset".into()),
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let workload = Sums { stop: Some((12, stop)), ..Sums::default() };
+        let (outcome, _) = measured(&workload, folder.path(), usize::MAX);
+        let journal = Journal::read(&folder.path().join(FILE_NAME)).unwrap();
+        let ok = journal.rows.iter().filter(|row| row.status == Status::Ok).count();
+        match error {
+            Error::Interrupted => {
+                assert!(matches!(outcome, Err(Error::Interrupted)), "{outcome:?}");
+                // Huge and wrong ones have their rows as well
+                assert_eq!((ok, journal.rows.len()), (2, rows));
+            }
+            // The second device is opened again; its other case is measured there, the first device's are kept
+            _ => {
+                let outcome = outcome.unwrap();
+                assert_eq!((outcome.count(Status::Failed), outcome.count(Status::Ok)), (1, 7));
+            }
+        }
+        let (outcome, _) = measured(&Sums::default(), folder.path(), usize::MAX);
+        let journal = outcome.unwrap().journal;
+        assert_eq!((journal.rows.len(), journal.rows.iter().filter(|r| r.status == Status::Ok).count()), (16, 8));
+    }
 }

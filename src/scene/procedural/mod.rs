@@ -116,7 +116,7 @@ fn parse(spec: &str) -> Result<(&'static SceneInfo, Vec<u64>)> {
 
 /// Parses `key=value`: the index of the parameter, and its value.
 fn setting_of(info: &SceneInfo, spec: &str, setting: &str) -> Result<(usize, u64)> {
-    let Some((key, text)) = setting.split_once('=') else {
+    let Some((key, text)) = setting.split_once('=').map(|(key, text)| (key.trim(), text.trim())) else {
         return Err(Error::argument(spec, format!("`{setting}` is not of the form key=value"), example(info)));
     };
     let Some(index) = info.parameters.iter().position(|p| p.name == key) else {

@@ -17,20 +17,22 @@ pub struct TraceCase {
     pub size: Size,
     /// Frames that the camera path is thinned to; all where absent.
     pub frames: Option<usize>,
+    /// Name or file of the camera path; empty for the scene's own.
+    pub camera_path: String,
 }
 
 /// The value of the axis `frames` for all frames of a path, until the path is read.
 const ALL_FRAMES: &str = "all";
 
 impl TraceCase {
-    /// For the harness. `camera_path` is empty for the scene's own.
-    pub fn to_case(&self, scene: &str, camera_path: &str) -> Case {
-        let TraceCase { selection, config, size, frames } = self;
+    /// For the harness.
+    pub fn to_case(&self, scene: &str) -> Case {
+        let TraceCase { selection, config, size, frames, camera_path } = self;
         let resolution = format!("{}x{}", size.width, size.height);
         let frames_text = frames.map_or(ALL_FRAMES.to_owned(), |frames| frames.to_string());
         let mut axes: std::collections::BTreeMap<String, String> = [
             ("scene", scene.to_owned()),
-            ("camera_path", camera_path.to_owned()),
+            ("camera_path", camera_path.clone()),
             ("structure", selection.name().to_owned()),
             ("config", format!("{config:?}")),
             ("resolution", resolution.clone()),
@@ -49,7 +51,7 @@ impl TraceCase {
             axes,
             input: scene.to_owned(),
             group: selection.full_name(),
-            turn: format!("{config:?} {resolution} {frames_text}"),
+            turn: format!("{config:?} {resolution} {frames_text} {camera_path}").trim_end().to_owned(),
             device: 0,
             work: size.pixels() as u64 * frames.unwrap_or(1) as u64 * rays_per_pixel,
         }
@@ -69,6 +71,7 @@ impl TraceCase {
             config: rays::parse_config(case.axis("config"))?,
             size: rays::parse_size(case.axis("resolution"))?,
             frames,
+            camera_path: case.axis("camera_path").to_owned(),
         })
     }
 }

@@ -40,8 +40,16 @@ pub(super) struct TraceInput<'a> {
 pub(super) struct Path {
     pub config: Config,
     frames: Option<usize>,
+    /// As it was asked for; empty for the scene's own.
+    asked: String,
     pub record: PathRecord,
     pub views: Vec<View>,
+}
+
+impl Path {
+    fn is_of(&self, case: &TraceCase) -> bool {
+        (self.config, self.frames, &self.asked) == (case.config, case.frames, &case.camera_path)
+    }
 }
 
 impl<'a> TraceInput<'a> {
@@ -51,12 +59,13 @@ impl<'a> TraceInput<'a> {
         let scene = Arc::new(scene::load_in(&first.input, context.library.scenes_folder.as_deref())?);
         let mut paths: Vec<Path> = Vec::new();
         for case in cases {
-            let TraceCase { config, frames, .. } = TraceCase::parse(case)?;
-            if !paths.iter().any(|path| (path.config, path.frames) == (config, frames)) {
-                let name = Some(case.axis("camera_path")).filter(|name| !name.is_empty());
+            let case = TraceCase::parse(case)?;
+            if !paths.iter().any(|path| path.is_of(&case)) {
+                let TraceCase { config, frames, camera_path: asked, .. } = case;
+                let name = Some(asked.as_str()).filter(|name| !name.is_empty());
                 let path = CameraPath::named_or_fitting(name, &scene, config.shadows())?;
                 let record = PathRecord { name: path.name.clone(), hash: path.content_hash() };
-                paths.push(Path { config, frames, record, views: path.views(&scene, frames)? });
+                paths.push(Path { config, frames, views: path.views(&scene, frames)?, asked, record });
             }
         }
         let selection = Selection::parse("bvh")?;
@@ -78,7 +87,7 @@ impl<'a> TraceInput<'a> {
 
     /// The camera path of a case.
     pub fn path(&self, case: &TraceCase) -> Result<&Path> {
-        let found = self.paths.iter().find(|path| (path.config, path.frames) == (case.config, case.frames));
+        let found = self.paths.iter().find(|path| path.is_of(case));
         found.ok_or_else(|| Error::Device("a case whose camera path was not opened".into()))
     }
 
@@ -97,7 +106,8 @@ impl<'a> TraceInput<'a> {
 
     /// What decides which image a case makes: all structures must make the same one.
     pub fn image_key(&self, case: &TraceCase) -> String {
-        format!("{:?} {:?} {:?} {:?}", case.config, case.frames, case.size, case.selection.method().rays())
+        let rays = case.selection.method().rays();
+        format!("{:?} {:?} {:?} {rays:?} {}", case.config, case.frames, case.size, case.camera_path)
     }
 }
 
@@ -131,7 +141,8 @@ impl Input for TraceInput<'_> {
 
     fn remember(&self, case: &Case, row: &Row) {
         let (Ok(case), Some(hash)) = (TraceCase::parse(case), row.outputs.get("image")) else { return };
-        if row.status == Status::Ok {
+        // The first of them founded the reference
+        if row.status == Status::Ok && row.outputs.get("reference_image") == Some(hash) {
             let own = (case.selection.name().to_owned(), hash.clone());
             self.images.borrow_mut().entry(self.image_key(&case)).or_insert(own);
         }

@@ -33,7 +33,7 @@ pub(super) struct TraceRun<'a> {
     built: &'a Built,
     tracer: Box<dyn Prepared + 'a>,
     /// The comparison with the twin on the small image, by configuration.
-    small: HashMap<(Config, Option<usize>), Checked>,
+    small: HashMap<(Config, Option<usize>, String), Checked>,
     /// The first image by the timed kernel, RGBA8: what the counting kernel must make as well.
     first_image: Vec<u8>,
 }
@@ -95,7 +95,8 @@ impl<'a> TraceRun<'a> {
         if let Some(difference) = verdict.difference.as_ref().filter(|_| !verdict.ok) {
             let Size { width, height } = size;
             let (scene, structure) = (&self.input.record.name, self.selection.full_name());
-            let name = format!("{scene}-{structure}-{:?}-{width}x{height}-frame{frame}", case.config);
+            let (config, path) = (case.config, &case.camera_path);
+            let name = format!("{scene}-{structure}-{config:?}-{width}x{height}-frame{frame}-{path}");
             let file = format!("differences/{}.png", files::slug(&name));
             let folder = context.out.join("differences");
             std::fs::create_dir_all(&folder).map_err(|source| Error::output(&folder, source))?;
@@ -110,8 +111,13 @@ impl<'a> TraceRun<'a> {
     fn compare_structures(&self, case: &TraceCase, hash: &str) -> (String, Option<String>) {
         let mut images = self.input.images.borrow_mut();
         let own = (self.selection.name().to_owned(), hash.to_owned());
-        let (first, reference) = images.entry(self.input.image_key(case)).or_insert(own);
-        (reference.clone(), (self.exact && reference != hash).then(|| first.clone()))
+        let key = self.input.image_key(case);
+        // What is not exact is compared with nothing, and nothing is compared with it
+        if !self.exact {
+            return (images.get(&key).unwrap_or(&own).1.clone(), None);
+        }
+        let (first, reference) = images.entry(key).or_insert(own);
+        (reference.clone(), (reference != hash).then(|| first.clone()))
     }
 }
 
@@ -126,18 +132,18 @@ impl Run for TraceRun<'_> {
 
     fn verify(&mut self, case: &Case) -> Result<Verdict> {
         let case = TraceCase::parse(case)?;
-        let key = (case.config, case.frames);
+        let key = (case.config, case.frames, case.camera_path.clone());
         // On the small image, with the twin, once for all sizes
         if !self.small.contains_key(&key) {
-            let last = self.input.path(&case)?.views.len() / 2;
-            let frames = if last == 0 { vec![0] } else { vec![0, last] };
+            let middle = self.input.path(&case)?.views.len() / 2;
+            let frames = if middle == 0 { vec![0] } else { vec![0, middle] };
             let mut checked = Checked::default();
             for frame in frames {
                 if checked.problem().is_none() {
                     self.check(&case, frame, SMALL, &mut checked)?;
                 }
             }
-            self.small.insert(key, checked);
+            self.small.insert(key.clone(), checked);
         }
         let mut checked = self.small[&key].clone();
         let mut verdict = Verdict::default();

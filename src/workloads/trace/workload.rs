@@ -7,7 +7,7 @@ use super::record::{RAY_TYPES, WORKLOAD, variant_of};
 use super::tracer::Decorate;
 use super::{Selection, artifacts};
 use crate::camera::CameraPath;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::harness::parse_list;
 use crate::harness::workload::{Axis, Case, Context, Info, Input, Library, Part, Workload};
 use crate::record::journal::Journal;
@@ -161,8 +161,17 @@ impl Workload for Trace {
         }
         let configs = parse_list(part.of("config"), rays::parse_config)?;
         let sizes = parse_list(part.of("resolution"), rays::parse_size)?;
-        let camera_path = part.of("camera_path").last();
-        if let Some(name) = camera_path {
+        for axis in ["scene", "structure", "config", "resolution"] {
+            if part.of(axis).is_empty() {
+                let hint = format!("give --{axis}, or {axis} in the preset");
+                return Err(Error::argument(format!("--{axis}"), format!("no {axis} is given"), hint));
+            }
+        }
+        let camera_paths = match part.of("camera_path") {
+            [] => vec![String::new()],
+            names => names.to_vec(),
+        };
+        for name in camera_paths.iter().filter(|name| !name.is_empty()) {
             CameraPath::load(name)?;
         }
         let mut cases = Vec::new();
@@ -172,8 +181,11 @@ impl Workload for Trace {
             for selection in &selections {
                 for &config in &configs {
                     for &size in &sizes {
-                        let case = TraceCase { selection: selection.clone(), config, size, frames: part.frames };
-                        cases.push(case.to_case(&scene, camera_path.map_or("", String::as_str)));
+                        for camera_path in &camera_paths {
+                            let (selection, camera_path) = (selection.clone(), camera_path.clone());
+                            let case = TraceCase { selection, config, size, frames: part.frames, camera_path };
+                            cases.push(case.to_case(&scene));
+                        }
                     }
                 }
             }

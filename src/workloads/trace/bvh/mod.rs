@@ -43,8 +43,12 @@ const OPTIONS: &[OptionInfo] = &[
         "cost of a traversal step: with it, nodes within max_leaf are split, too, where that is cheaper; inf: never",
         Kind::Number(0.0, f64::INFINITY),
     ),
-    OptionInfo::new(Axis::Build, "ki", "1", "cost of a triangle test", Kind::Number(1e-6, 1e6)),
+    OptionInfo::new(Axis::Build, "ki", "1", "cost of a triangle test", Kind::Number(1e-6, 1e6)).idle_if(no_costs),
 ];
+
+fn no_costs(s: &Selection) -> Option<String> {
+    (s.value("kt") == "inf").then(|| "costs are compared only with kt".to_owned())
+}
 
 const PLOC_OPTIONS: &[OptionInfo] =
     &[OptionInfo::new(Axis::Build, "preset", "medium", "obvhs's preset", Kind::Word(&ploc::PRESETS))];

@@ -39,8 +39,14 @@ const OPTIONS: &[OptionInfo] = &[
         "4",
         "cells on the shortest axis: factor * triangles^(1/4); coarser where that would take excessive memory",
         Kind::Number(0.01, 1000.0),
-    ),
+    )
+    .idle_if(cells_are_given),
 ];
+
+fn cells_are_given(s: &Selection) -> Option<String> {
+    let given = ["x", "y", "z"].into_iter().find(|axis| s.count(axis).is_some());
+    given.map(|axis| format!("{axis} gives the number of cells"))
+}
 
 fn config(selection: &Selection) -> build::Config {
     let resolution = ["x", "y", "z"].map(|axis| selection.count(axis));
