@@ -125,6 +125,11 @@ impl File<'_> {
             if !self.info.axes.iter().any(|axis| axis.is_flag && axis.name == key) {
                 return Err(self.wrong(self.line_of(&key, index), unknown(self.info, &key)));
             }
+            let is_table = |value: &Value| value.as_array().is_some_and(|items| items.iter().any(Value::is_table));
+            if self.info.axes.first().is_some_and(|subject| subject.name == key) && is_table(&value) {
+                // A part's name before there were several workloads
+                return Err(self.wrong(self.line_of(&key, index), format!("[[{key}]] is called [[part]] now")));
+            }
             let texts = match &value {
                 Value::Array(items) if !items.is_empty() => items.iter().map(text_of).collect(),
                 single => text_of(single).map(|text| vec![text]),
@@ -172,7 +177,6 @@ fn unknown(info: &Info, key: &str) -> String {
         "structures" | "configs" | "resolutions" => format!("the key {key} is called {} now", &key[..key.len() - 1]),
         "warmup_frames" => "the key warmup_frames is called warmup now".to_owned(),
         "build_threads" => "the key build_threads is called threads now".to_owned(),
-        "scene" => "[[scene]] is called [[part]] now".to_owned(),
         _ => format!(
             "unknown key {key}; there are {}, frames, passes, warmup, threads, builds, workload and [[part]]",
             axes.join(", ")

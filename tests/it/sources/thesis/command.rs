@@ -74,7 +74,7 @@ fn a_broken_or_empty_run_is_one_clear_error() {
             ("absent", &["absent", "cannot read"][..]),
             ("empty", &["no run", "journal.jsonl"]),
             ("garbage", &["journal.jsonl:1", "not a record"]),
-            ("bare", &["nothing was measured"]),
+            ("bare", &["no case of it has a result"]),
         ] {
             let arguments = with(&path(name));
             one_error(&arguments.iter().map(String::as_str).collect::<Vec<_>>(), words);
