@@ -64,7 +64,9 @@ impl Selection {
                 .map_err(|hint| Error::argument(place(), format!("'{value}' is no value for {key}"), hint))?;
         }
         let selection = Selection { algorithm, values };
-        for (option, _) in table.iter().zip(&set).filter(|(_, set)| **set) {
+        // A default that is written out asks for nothing
+        let asked = table.iter().zip(&set).zip(&selection.values).filter(|((o, set), v)| **set && o.default != **v);
+        for ((option, _), _) in asked {
             if let Some(why) = option.idle.and_then(|idle| idle(&selection)) {
                 let problem = format!("{} has no effect: {why}", option.key);
                 return Err(Error::argument(place(), problem, format!("leave {} out", option.key)));

@@ -57,7 +57,8 @@ fn variants_are_canonical() {
     assert_eq!(selection("bvh:bins=16").variant(), "default");
     assert_eq!(selection("bvh:max_leaf=08,bins=8").variant(), "bins=8,max_leaf=8");
     assert_eq!(selection("grid:factor=4.0").variant(), "default");
-    assert_eq!(selection("grid:factor=2.50,x=auto,z=7").variant(), "z=7,factor=2.5");
+    assert_eq!(selection("grid:factor=2.50,x=auto").variant(), "factor=2.5");
+    assert_eq!(selection("grid:z=07,y=9,factor=4").variant(), "y=9,z=7");
     for text in SELECTIONS {
         let one = selection(text);
         let again = format!("{}:{}", one.name(), one.variant()).replace(":default", "");
@@ -92,12 +93,18 @@ fn all_is_every_algorithm_but_brute_force() {
 
 #[test]
 fn an_option_without_effect_is_refused() {
-    for text in ["kdtree:search=restart,stack=8", "kdtree:memory=private,search=pushdown"] {
+    for (text, why) in [
+        ("kdtree:search=restart,stack=8", "stack has no effect: search="),
+        ("kdtree:memory=private,search=pushdown", "memory has no effect: search="),
+        ("grid:factor=2.5,z=7", "factor has no effect: z"),
+        ("bvh:kt=inf,ki=3", "ki has no effect: costs"),
+    ] {
         let error = Selection::parse(text).expect_err(text);
         assert!(matches!(error, Error::Input(_)) && error.exit_code() == 2);
         let line = error.to_string();
-        assert!(line.contains("has no effect: search=") && line.contains("leave"), "{line}");
+        assert!(line.contains(why) && line.contains("leave"), "{line}");
     }
+    assert_eq!(selection("kdtree:search=restart,stack=4"), selection("kdtree:search=restart"), "a default asks nothing");
 }
 
 #[test]
