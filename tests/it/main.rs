@@ -8,6 +8,7 @@ mod compare; // pairs, judgements and statistics against known answers
 mod device; // frames of several passes, indirect dispatch, textures, features
 mod exact; // the ray/triangle test against exact arithmetic
 mod fakes; // records with known content, a device that breaks on demand
+mod files; // names of files of all kinds, and what must not be written over
 mod identities; // hashes of kernels and readers do not depend on comments
 mod kernels; // every kernel variant through naga, struct layouts, no GPU
 mod language; // comments and documents are at most 120 columns wide
