@@ -13,7 +13,9 @@ mod devices;
 mod figures;
 mod interrupt;
 mod library;
+mod merge;
 mod output;
+mod plan;
 mod progress;
 mod render;
 mod report;
@@ -55,6 +57,7 @@ enum Command {
     Claims(claims::Arguments),
     Figures(figures::Arguments),
     Report(report::Arguments),
+    Merge(merge::Arguments),
     Render(render::Arguments),
     Build(build::Arguments),
     Trace(trace::Arguments),
@@ -109,6 +112,7 @@ fn run(command: Command) -> Result<ExitCode> {
         Command::Claims(arguments) => claims::run(&arguments).map(done),
         Command::Figures(arguments) => figures::run(&arguments).map(done),
         Command::Report(arguments) => report::run(&arguments).map(done),
+        Command::Merge(arguments) => merge::run(&arguments),
         Command::Render(arguments) => render::run(&arguments).map(done),
         Command::Build(arguments) => build::run(&arguments),
         Command::Trace(arguments) => trace::run(&arguments).map(done),

@@ -4,6 +4,7 @@ use super::device::{self, DeviceArguments};
 use super::interrupt;
 use super::library::{LibraryArguments, file_name};
 use super::output;
+use super::plan;
 use super::progress::Progress;
 use crate::error::{Error, Result};
 use crate::harness::previous::PreviousRun;
@@ -12,6 +13,7 @@ use crate::harness::workload::{Info, Library, Workload};
 use crate::harness::{Plan, Request, environment, summary};
 use crate::names;
 use crate::record::row::{Row, Status};
+use crate::record::run::Shard;
 use crate::record::terminal::counted;
 use crate::record::{files, journal};
 use crate::workloads;
@@ -43,6 +45,9 @@ struct CommonArguments {
     /// Resume the run in this folder, by the flags it began with: rows that it has are kept
     #[arg(long, value_name = "FOLDER")]
     resume: Option<PathBuf>,
+    /// Measure only part I of N of the plan; `rtbench merge` joins the parts
+    #[arg(long, value_name = "I/N")]
+    shard: Option<Shard>,
     /// Exit with code 2 if a case was skipped
     #[arg(long)]
     strict: bool,
@@ -57,7 +62,7 @@ struct CommonArguments {
 const ALSO_RESUMED: [&str; 3] = ["resume", "strict", "quiet"];
 
 /// Flags of `rtbench plan WORKLOAD` besides the axes.
-const PLANNED: [&str; 6] = ["preset", "scenes_dir", "scene_time", "frames", "passes", "warmup"];
+const PLANNED: [&str; 7] = ["shard", "preset", "scenes_dir", "scene_time", "frames", "passes", "warmup"];
 
 /// What was given on a command line.
 struct Given {
@@ -129,7 +134,8 @@ pub fn plan_command() -> Command {
         for id in ids.into_iter().filter(|id| hidden(id.as_str())) {
             command = command.mut_arg(id, |argument| argument.hide(true));
         }
-        plan = plan.subcommand(command);
+        let like = Arg::new("like").long("like").value_name("RUN").value_parser(clap::value_parser!(PathBuf));
+        plan = plan.subcommand(command.arg(like.help("A recorded run, whose speed gives an estimate of the time")));
     }
     plan
 }
@@ -142,7 +148,9 @@ pub fn run(matches: &ArgMatches) -> Option<Result<ExitCode>> {
     let (name, matches) = matches.subcommand()?;
     if name == "plan" {
         let (name, matches) = matches.subcommand()?;
-        return Some(Given::read(workloads::find(name)?, matches).and_then(|given| given.list()));
+        return Some(Given::read(workloads::find(name)?, matches).and_then(|given| {
+            given.list(matches.get_one::<PathBuf>("like").map(PathBuf::as_path))
+        }));
     }
     Some(Given::read(workloads::find(name)?, matches).and_then(Given::run))
 }
@@ -224,6 +232,7 @@ impl Given {
                 warmup: common.warmup,
                 threads: Some(common.device.threads),
                 library: Library { scenes_folder: common.library.folder(), scene_time: common.library.time() },
+                shard: common.shard,
             },
         )?;
         for absent in &plan.absent {
@@ -234,29 +243,14 @@ impl Given {
     }
 
     /// Prints the plan.
-    fn list(&self) -> Result<ExitCode> {
+    fn list(&self, like: Option<&Path>) -> Result<ExitCode> {
         if self.common.resume.is_some() {
             let hint = "leave it out; the journal's first line tells how the run began";
             return Err(Error::argument("--resume", "a plan is of a run that begins", hint));
         }
         self.common.device.check()?;
         let plan = self.plan()?;
-        let axes: Vec<&str> = self.workload.info().axes.iter().map(|axis| axis.name).collect();
-        let mut csv = csv::Writer::from_writer(Vec::new());
-        let written = csv.write_record(&axes).and_then(|()| {
-            plan.cases.iter().try_for_each(|case| csv.write_record(axes.iter().map(|axis| case.axis(axis))))
-        });
-        // Writing to memory does not fail
-        let bytes = written.ok().and_then(|()| csv.into_inner().ok()).unwrap_or_default();
-        output::print(&String::from_utf8_lossy(&bytes))?;
-        let settings = plan.settings;
-        output::note(&format!(
-            "{} of preset {}, {} after {} of warm-up each",
-            counted(plan.cases.len(), "case", "cases"),
-            plan.preset,
-            counted(settings.passes, "pass", "passes"),
-            counted(settings.warmup_frames, "frame", "frames")
-        ));
+        plan::print(self.workload, &plan, like)?;
         Ok(ExitCode::SUCCESS)
     }
 

@@ -10,6 +10,7 @@ mod plan;
 pub mod preset;
 pub mod previous;
 pub mod run;
+pub mod shard;
 pub mod summary;
 mod turns;
 pub mod workload;

@@ -2,11 +2,13 @@
 //! a whole before anything runs, and needs no device.
 
 use super::preset::Preset;
+use super::shard;
 use super::workload::{Case, Library, Part, Workload};
 use crate::error::{Error, Result};
 use crate::record::row::Settings;
-use crate::record::run::PlanRecord;
-use std::collections::BTreeMap;
+use crate::record::run::{PlanRecord, Shard};
+use std::collections::hash_map::Entry;
+use std::collections::{BTreeMap, HashMap};
 
 /// Most frames and passes: samples are kept.
 const MAX_REPEATS: usize = 100_000;
@@ -28,6 +30,8 @@ pub struct Request {
     pub threads: Option<usize>,
     /// Where inputs are found.
     pub library: Library,
+    /// The part that is measured; all where absent.
+    pub shard: Option<Shard>,
 }
 
 /// A checked plan.
@@ -35,8 +39,14 @@ pub struct Request {
 pub struct Plan {
     /// The preset that it began with.
     pub preset: String,
-    /// What is measured, each once, in this order.
+    /// What is measured, each once, in this order: the shard's cases where there is one.
     pub cases: Vec<Case>,
+    /// All cases, of every shard.
+    pub whole: Vec<Case>,
+    /// The part that is measured; all where absent.
+    pub shard: Option<Shard>,
+    /// BLAKE3 of workload, all cases and settings: equal for the shards of one plan.
+    pub hash: String,
     /// How.
     pub settings: Settings,
     /// Where inputs are found.
@@ -72,36 +82,51 @@ impl Plan {
         in_range("--passes", settings.passes, 1)?;
         in_range("--warmup", settings.warmup_frames, 0)?;
         in_range("builds", settings.builds, 1)?;
-        let mut cases: Vec<Case> = Vec::new();
+        if let (Some(shard), Some(first)) = (request.shard, absent.first()) {
+            let problem = format!("shard {shard} needs every machine to have all inputs: {first}");
+            return Err(Error::argument("--shard", problem, "bring it to this machine, or leave it out on all machines"));
+        }
+        let mut whole: Vec<Case> = Vec::new();
+        let mut known: HashMap<(Vec<(String, String)>, usize), usize> = HashMap::new();
         let mut shorter = 0;
         for part in parts {
             part.frames.map_or(Ok(()), |frames| in_range("--frames", frames, 1))?;
             for case in workload.plan(&part, &request.library)? {
                 // Of cases that differ in nothing but their frames, the first part's
-                match cases.iter().find(|known| is_same(known, &case)) {
-                    None => cases.push(case),
-                    Some(known) => shorter += usize::from(known.axes != case.axes),
+                match known.entry((without_frames(&case), case.device)) {
+                    Entry::Vacant(entry) => {
+                        entry.insert(whole.len());
+                        whole.push(case);
+                    }
+                    Entry::Occupied(entry) => shorter += usize::from(whole[*entry.get()].axes != case.axes),
                 }
             }
         }
-        if cases.is_empty() {
+        if whole.is_empty() {
             return Err(Error::argument("--preset", "the plan has no case", "give a value for each axis"));
         }
         let mut notes = Vec::new();
         if shorter > 0 {
             notes.push(format!("{shorter} cases differ from an earlier part's in their frames only and are left out"));
         }
-        Ok(Plan { preset: preset.name, cases, notes, settings, library: request.library.clone(), absent })
+        let cases = match request.shard {
+            Some(shard) => shard::select(&whole, shard)?,
+            None => whole.clone(),
+        };
+        let (shard, library, hash) = (request.shard, request.library.clone(), hash(info.name, &whole, settings));
+        Ok(Plan { preset: preset.name, cases, whole, shard, hash, notes, settings, library, absent })
     }
 
     /// The inputs, each once, with their cases.
     pub fn inputs(&self) -> Vec<(&str, Vec<Case>)> {
         let mut inputs: Vec<(&str, Vec<Case>)> = Vec::new();
+        let mut index: HashMap<&str, usize> = HashMap::new();
         for case in &self.cases {
-            match inputs.iter_mut().find(|(input, _)| *input == case.input) {
-                Some((_, cases)) => cases.push(case.clone()),
-                None => inputs.push((&case.input, vec![case.clone()])),
-            }
+            let at = *index.entry(&case.input).or_insert_with(|| {
+                inputs.push((&case.input, Vec::new()));
+                inputs.len() - 1
+            });
+            inputs[at].1.push(case.clone());
         }
         inputs
     }
@@ -111,10 +136,10 @@ impl Plan {
         self.cases.iter().map(|case| case.work).sum()
     }
 
-    /// Values that occur on each axis, in their order.
+    /// Values that occur on each axis in the whole plan, in their order.
     pub fn axes(&self) -> BTreeMap<String, Vec<String>> {
         let mut axes: BTreeMap<String, Vec<String>> = BTreeMap::new();
-        for (axis, value) in self.cases.iter().flat_map(|case| &case.axes) {
+        for (axis, value) in self.whole.iter().flat_map(|case| &case.axes) {
             let values = axes.entry(axis.clone()).or_default();
             if !values.contains(value) {
                 values.push(value.clone());
@@ -131,6 +156,10 @@ impl Plan {
             rows: self.cases.len(),
             settings: self.settings,
             absent: self.absent.clone(),
+            work: self.work(),
+            total: self.whole.len(),
+            hash: self.hash.clone(),
+            shard: self.shard,
         }
     }
 }
@@ -143,12 +172,16 @@ fn in_range(flag: &str, value: usize, least: usize) -> Result<()> {
     Err(Error::argument(flag, format!("{value} is out of range"), hint))
 }
 
-/// True for cases that differ at most in their number of frames.
-fn is_same(a: &Case, b: &Case) -> bool {
-    let axes = |case: &Case| -> Vec<(String, String)> {
-        case.axes.iter().filter(|(axis, _)| *axis != "frames").map(|(k, v)| (k.clone(), v.clone())).collect()
-    };
-    a.device == b.device && axes(a) == axes(b)
+/// The axes of a case but its number of frames.
+fn without_frames(case: &Case) -> Vec<(String, String)> {
+    case.axes.iter().filter(|(axis, _)| *axis != "frames").map(|(k, v)| (k.clone(), v.clone())).collect()
+}
+
+/// BLAKE3 of a whole plan.
+fn hash(workload: &str, cases: &[Case], settings: Settings) -> String {
+    let cases: Vec<_> = cases.iter().map(|case| (&case.axes, case.device, case.work)).collect();
+    let text = serde_json::to_string(&(workload, settings, cases)).unwrap_or_default();
+    blake3::hash(text.as_bytes()).to_hex().to_string()
 }
 
 /// The parts of a preset that were asked for, with what the request overrides. What this machine does not have is put

@@ -4,6 +4,7 @@
 use super::workload::{Case, Info};
 use crate::error::{Error, Result};
 use crate::record::journal::{FILE_NAME, Journal};
+use crate::record::merge;
 use crate::record::row::{Input, Key, Row};
 use crate::record::run::Provenance;
 use std::collections::HashMap;
@@ -17,8 +18,10 @@ const HINT: &str = "begin a new run: rows of both must not be in one table";
 pub struct PreviousRun {
     path: PathBuf,
     journal: Option<Journal>,
-    /// Index of each row that need not be measured again, by key and device.
+    /// Index of each row that need not be measured again, by key and device of the plan.
     done: HashMap<(Key, usize), usize>,
+    /// For each device of the plan, its index among the recorded ones; empty where both are the same.
+    devices: Vec<usize>,
 }
 
 impl PreviousRun {
@@ -30,8 +33,9 @@ impl PreviousRun {
         let path = folder.join(FILE_NAME);
         let journal = Journal::read(&path)?;
         let done = journal.rows.iter().enumerate().filter(|(_, row)| row.status.is_final());
-        let done = done.map(|(index, row)| ((row.key.clone(), row.device), index)).collect();
-        Ok(PreviousRun { path, journal: Some(journal), done })
+        let role = |row: &Row| merge::role(&journal.provenance, row.device);
+        let done = done.map(|(index, row)| ((row.key.clone(), role(row)), index)).collect();
+        Ok(PreviousRun { path, journal: Some(journal), done, devices: Vec::new() })
     }
 
     /// Its journal.
@@ -65,32 +69,44 @@ impl PreviousRun {
     ///
     /// # Errors
     /// [`Error::Input`] that names what differs.
-    pub fn check(&self, now: &Provenance) -> Result<()> {
+    pub fn check(&mut self, now: &Provenance) -> Result<()> {
         let Some(before) = self.provenance() else { return Ok(()) };
-        let machine = |p: &Provenance| {
-            let e = &p.environment;
-            (e.architecture.clone(), e.cpu.clone(), e.logical_cpus, e.variables.clone())
-        };
+        let part = before.merged.iter().find(|run| {
+            let devices = run.devices.iter().filter_map(|&device| before.devices.get(device)).map(|device| &device.info);
+            run.environment.machine() == now.environment.machine()
+                && devices.eq(now.devices.iter().map(|device| &device.info))
+                && run.executable_hash == now.program.executable_hash
+        });
+        let own_devices = part.map(|run| run.devices.clone());
+        let is_merged = !before.merged.is_empty();
         let revision = |p: &Provenance| format!("{}, built from {}", p.program.version, p.program.git_revision);
         let devices = |p: &Provenance| p.devices.iter().map(|device| device.info.clone()).collect::<Vec<_>>();
-        let what = if before.program != now.program {
+        let what = if is_merged && own_devices.is_none() {
+            "it was merged from runs of other machines, devices or builds than this one".into()
+        } else if !is_merged && before.program != now.program {
             let (before, now) = (revision(before), revision(now));
             let difference = if before == now { "with other sources or settings, " } else { "" };
             format!("another build of the program ({difference}{before}) than this one ({now}) measured it")
-        } else if devices(before) != devices(now) {
+        } else if !is_merged && devices(before) != devices(now) {
             let names = |p: &Provenance| {
                 let names = p.devices.iter().map(|device| device.info.with_driver());
                 names.collect::<Vec<_>>().join(", ")
             };
             format!("it was measured on {}, not on {}, or with other switches", names(before), names(now))
-        } else if machine(before) != machine(now) {
+        } else if !is_merged && before.environment.machine() != now.environment.machine() {
             "the machine or its variables (RTBENCH_*, VK_*, LP_*, ...) have changed since".into()
         } else if before.workload != now.workload || before.plan != now.plan {
             "inputs, axes or the preset's file are not the same any more".into()
         } else {
+            self.devices = own_devices.unwrap_or_default();
             return Ok(());
         };
         Err(self.refusal(what))
+    }
+
+    /// The index among the recorded devices of a device of the plan.
+    pub fn device(&self, of_plan: usize) -> usize {
+        self.devices.get(of_plan).copied().unwrap_or(of_plan)
     }
 
     /// Refuses to go on with an input whose content has changed under its name.

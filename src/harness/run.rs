@@ -71,7 +71,7 @@ impl Outcome {
 /// # Errors
 /// [`Error::Interrupted`], [`Error::Output`], [`Error::Input`] where nothing else is to be measured, or a lost device
 /// that does not come back.
-pub fn run(job: Job) -> Result<Outcome> {
+pub fn run(mut job: Job) -> Result<Outcome> {
     let record = |opened: &Opened| DeviceRecord { info: opened.device.info().clone(), reason: opened.reason.clone() };
     let provenance = Provenance {
         schema: SCHEMA.into(),
@@ -83,6 +83,7 @@ pub fn run(job: Job) -> Result<Outcome> {
         devices: job.devices.iter().map(record).collect(),
         environment: environment::capture(),
         plan: job.plan.record(),
+        merged: Vec::new(),
     }
     .identified();
     job.previous.check(&provenance)?;
@@ -151,7 +152,7 @@ pub(super) struct Runner<'a, 'j> {
     devices: Vec<Option<Opened>>,
     infos: Vec<DeviceInfo>,
     open: &'a dyn Fn(usize) -> Result<Opened>,
-    previous: PreviousRun,
+    pub(super) previous: PreviousRun,
     /// Keys of the artifacts that have been recorded.
     artifacts: Vec<Key>,
     pub(super) journal: &'j mut JournalWriter,

@@ -163,7 +163,8 @@ impl Runner<'_, '_> {
     }
 
     /// Writes a row to the journal.
-    fn finish(&mut self, row: Row) -> Result<()> {
+    fn finish(&mut self, mut row: Row) -> Result<()> {
+        row.device = self.previous.device(row.device);
         let record = Record::Row(Box::new(row));
         self.journal.write(&record)?;
         if let Record::Row(row) = &record {

@@ -27,6 +27,11 @@ pub trait Workload: Sync {
         None
     }
 
+    /// What cases demand of a machine, one line each, as far as it is known without a device and without reading inputs.
+    fn needs(&self, _cases: &[Case], _library: &Library) -> Vec<String> {
+        Vec::new()
+    }
+
     /// Opens what some cases share: their [`Case::input`] is the same.
     ///
     /// # Errors
@@ -183,6 +188,8 @@ pub struct Info {
     pub description: &'static str,
     /// Examples and what the results are, for `--help`.
     pub examples: &'static str,
+    /// Unit of [`Case::work`], in the plural.
+    pub work_unit: &'static str,
     /// What can vary. The first axis is what a preset's parts are about.
     pub axes: &'static [Axis],
     /// Columns of `summary.csv` between the axes and the times: names of metrics, derived ones included.

@@ -1,5 +1,6 @@
 //! The journal of a run: append-only, one JSON record per line, on disk as soon as it is written.
 
+use super::merge;
 use super::row::{Artifact, Input, Key, Row, SCHEMA, Status};
 use super::run::{End, Provenance, Resumed};
 use crate::error::{Error, Result};
@@ -109,6 +110,15 @@ impl JournalWriter {
     /// # Errors
     /// [`Error::Output`].
     pub fn write(&mut self, record: &Record) -> Result<()> {
+        self.append(record)?;
+        self.synchronise()
+    }
+
+    /// Appends one line without bringing it to the disk.
+    ///
+    /// # Errors
+    /// [`Error::Output`].
+    pub fn append(&mut self, record: &Record) -> Result<()> {
         let output = |source| Error::output(&self.path, source);
         let mut line = serde_json::to_vec(record).map_err(|e| output(e.into()))?;
         line.push(b'\n');
@@ -118,13 +128,30 @@ impl JournalWriter {
             return Err(output(source));
         }
         self.length += line.len() as u64;
+        Ok(())
+    }
+
+    /// Brings what was appended to the disk.
+    fn synchronise(&self) -> Result<()> {
         match self.file.sync_data() {
             // Some file systems have nothing to synchronise with.
             Err(source) if !matches!(source.kind(), ErrorKind::InvalidInput | ErrorKind::Unsupported) => {
-                Err(output(source))
+                Err(Error::output(&self.path, source))
             }
             _ => Ok(()),
         }
+    }
+}
+
+/// Refuses a journal that a process is writing.
+///
+/// # Errors
+/// [`Error::Input`].
+pub fn check_idle(path: &Path) -> Result<()> {
+    match File::open(path) {
+        Ok(file) => lock(path, &file),
+        // Reading it says what is wrong
+        Err(_) => Ok(()),
     }
 }
 
@@ -252,6 +279,7 @@ impl Journal {
             truncated,
             length: bytes.len() as u64,
         };
+        let key_of = |provenance: &Provenance, row: &Row| (row.key.clone(), merge::role(provenance, row.device));
         let mut known: HashMap<(Key, usize), usize> = HashMap::new();
         for (number, record) in records {
             match record {
@@ -263,7 +291,7 @@ impl Journal {
                 Record::Artifact(artifact) => journal.artifacts.push(*artifact),
                 Record::Row(row) => {
                     // Only a resumed run measures a case again
-                    let key = (row.key.clone(), row.device);
+                    let key = key_of(&journal.provenance, &row);
                     match known.get(&key) {
                         Some(&index) if !journal.resumed.is_empty() => journal.rows[index] = *row,
                         _ => {
@@ -280,7 +308,7 @@ impl Journal {
                     let no_result = |row: &Row| matches!(row.status, Status::Failed | Status::Skipped);
                     journal.rows.retain(|row| !(no_result(row) && row.key.inputs.is_empty()));
                     let rows = journal.rows.iter().enumerate();
-                    known = rows.map(|(index, row)| ((row.key.clone(), row.device), index)).collect();
+                    known = rows.map(|(index, row)| (key_of(&journal.provenance, row), index)).collect();
                 }
             }
         }

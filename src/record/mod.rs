@@ -5,6 +5,7 @@
 
 pub mod files;
 pub mod journal;
+pub mod merge;
 pub mod picture;
 pub mod row;
 pub mod run;

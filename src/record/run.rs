@@ -26,6 +26,42 @@ pub struct Provenance {
     pub environment: Environment,
     /// What was to be measured.
     pub plan: PlanRecord,
+    /// The runs that this one was merged from, in the order of their rows; absent for a run that was measured as one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub merged: Vec<MergedRun>,
+}
+
+/// A run that was merged into another one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MergedRun {
+    /// Its id.
+    pub id: String,
+    /// Its start, UTC, RFC 3339.
+    pub started: String,
+    /// Its part of the plan; absent where it is all of it.
+    pub shard: Option<Shard>,
+    /// For each of its devices, the index among the merged run's. Machines of equal devices and equal environments
+    /// count as one.
+    pub devices: Vec<usize>,
+    /// The machine around its devices.
+    pub environment: Environment,
+    /// BLAKE3 of its program's file; the merged runs' programs are equal in everything else.
+    pub executable_hash: Option<String>,
+}
+
+/// A part of a plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Shard {
+    /// Which one, from 1 to `count`.
+    pub index: usize,
+    /// Number of parts.
+    pub count: usize,
+}
+
+impl std::fmt::Display for Shard {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(f, "{}/{}", self.index, self.count)
+    }
 }
 
 impl Provenance {
@@ -101,6 +137,13 @@ pub struct Environment {
     pub variables: BTreeMap<String, String>,
 }
 
+impl Environment {
+    /// What tells one machine from another, as far as times depend on it.
+    pub fn machine(&self) -> impl PartialEq {
+        (self.architecture.clone(), self.cpu.clone(), self.logical_cpus, self.variables.clone())
+    }
+}
+
 /// A run that is resumed, by the same program on the same devices.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Resumed {
@@ -117,14 +160,26 @@ pub struct Resumed {
 pub struct PlanRecord {
     /// The preset that the plan began with.
     pub preset: String,
-    /// Values of each axis that occur, as they were asked for.
+    /// Values of each axis that occur in the whole plan, as they were asked for.
     pub axes: BTreeMap<String, Vec<String>>,
-    /// Number of rows.
+    /// Number of rows of this run.
     pub rows: usize,
     /// How they are measured.
     pub settings: Settings,
     /// What the preset names and this machine does not have.
     pub absent: Vec<String>,
+    /// Work of this run's cases, in the workload's unit; 0 where it was not recorded.
+    #[serde(default)]
+    pub work: u64,
+    /// Number of rows of the whole plan; 0 where it was not recorded.
+    #[serde(default)]
+    pub total: usize,
+    /// BLAKE3 of the whole plan: workload, cases and settings; empty where it was not recorded.
+    #[serde(default)]
+    pub hash: String,
+    /// The part of the whole plan that was to be measured; absent where it is all of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shard: Option<Shard>,
 }
 
 /// How a run ended.

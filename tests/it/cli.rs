@@ -425,6 +425,7 @@ fn a_resumed_run_accepts_no_other_flags() {
         let value = match flag {
             "--resume" | "--strict" => continue,
             "--backend" => "cpu",
+            "--shard" => "1/2",
             _ if value.is_empty() => "",
             _ => "1",
         };

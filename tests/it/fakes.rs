@@ -41,8 +41,9 @@ pub fn provenance() -> Provenance {
             axes: [("scene".to_owned(), vec!["scan".to_owned()])].into(),
             rows: 2,
             settings: Settings { passes: 2, warmup_frames: 1, builds: 1, threads: 0 },
-            absent: vec![],
+            ..PlanRecord::default()
         },
+        merged: Vec::new(),
     }
 }
 

@@ -12,6 +12,7 @@ mod files; // names of files of all kinds, and what must not be written over
 mod identities; // hashes of kernels and readers do not depend on comments
 mod kernels; // every kernel variant through naga, struct layouts, no GPU
 mod language; // comments and documents are at most 120 columns wide
+mod many; // shards, merged runs, runs that are killed and resumed
 mod meshes; // closed meshes, and rays at their vertices and edges
 mod reference; // rays traced by Embree (needs RTBENCH_SCENES)
 mod report; // tables of any source in every format, parts of documents

@@ -29,6 +29,7 @@ static INFO: Info = Info {
     summary: "Sum up",
     description: "",
     examples: "",
+    work_unit: "sums",
     axes: &[axis("n"), axis("method")],
     columns: &["sum", "double", "bytes", "sum_hash"],
     table: &[("method", "method"), ("frame_ms_mean", "mean ms"), ("sum", "sum"), ("result", "result")],

@@ -18,6 +18,7 @@ pub mod input;
 pub mod intersect;
 pub mod kdtree;
 pub mod method;
+mod needs;
 mod options;
 pub mod pictures;
 pub mod rays;

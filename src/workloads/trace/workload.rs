@@ -58,6 +58,7 @@ The folder of results holds journal.jsonl (everything, one record per line), sum
 Ctrl-C ends a sweep in order, also while a structure is built: what was measured is kept, and `rtbench sweep --resume
 FOLDER` measures the rest. It goes on only with the same build of the program on the same device, with scenes and camera
 paths that have not changed.",
+    work_unit: "rays",
     axes: &[
         axis("scene", "FILE|NAME[:KEY=VALUE,..]", "Scene file, or name of a scene with options; may be repeated"),
         axis(
@@ -191,6 +192,10 @@ impl Workload for Trace {
             }
         }
         Ok(cases)
+    }
+
+    fn needs(&self, cases: &[Case], library: &Library) -> Vec<String> {
+        needs::of(cases, library)
     }
 
     fn open<'a>(&'a self, cases: &[Case], context: &'a Context<'a>) -> Result<Box<dyn Input + 'a>> {
