@@ -118,9 +118,13 @@ fn conclude(merged: &Merged, out: &Path) -> ExitCode {
         0 => ExitCode::SUCCESS,
         gaps => {
             let shards: Vec<String> = merged.missing.iter().map(ToString::to_string).collect();
-            let shards = if shards.is_empty() { String::new() } else { format!("; no run is shard {}", shards.join(", ")) };
+            let shards =
+                if shards.is_empty() { String::new() } else { format!("; no run is shard {}", shards.join(", ")) };
             let resume = format!("rtbench {} --resume {}", merged.provenance.workload, out.display());
-            output::complain(&format!("{} missing{shards}; for the rest: {resume}", counted(gaps, "row is", "rows are")));
+            output::complain(&format!(
+                "{} missing{shards}; for the rest: {resume}",
+                counted(gaps, "row is", "rows are")
+            ));
             ExitCode::from(1)
         }
     }

@@ -27,9 +27,8 @@ pub fn print(workload: &dyn Workload, plan: &Plan, like: Option<&Path>) -> Resul
         let shard = plan.shard.map(|shard| shard.to_string());
         axes.chain([case.work.to_string()]).chain(shard).collect()
     };
-    let written = csv
-        .write_record(&columns)
-        .and_then(|()| plan.cases.iter().try_for_each(|case| csv.write_record(line(case))));
+    let written =
+        csv.write_record(&columns).and_then(|()| plan.cases.iter().try_for_each(|case| csv.write_record(line(case))));
     // Writing to memory does not fail
     let bytes = written.ok().and_then(|()| csv.into_inner().ok()).unwrap_or_default();
     output::print(&String::from_utf8_lossy(&bytes))?;

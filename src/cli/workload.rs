@@ -148,9 +148,10 @@ pub fn run(matches: &ArgMatches) -> Option<Result<ExitCode>> {
     let (name, matches) = matches.subcommand()?;
     if name == "plan" {
         let (name, matches) = matches.subcommand()?;
-        return Some(Given::read(workloads::find(name)?, matches).and_then(|given| {
-            given.list(matches.get_one::<PathBuf>("like").map(PathBuf::as_path))
-        }));
+        return Some(
+            Given::read(workloads::find(name)?, matches)
+                .and_then(|given| given.list(matches.get_one::<PathBuf>("like").map(PathBuf::as_path))),
+        );
     }
     Some(Given::read(workloads::find(name)?, matches).and_then(Given::run))
 }

@@ -84,7 +84,11 @@ impl Plan {
         in_range("builds", settings.builds, 1)?;
         if let (Some(shard), Some(first)) = (request.shard, absent.first()) {
             let problem = format!("shard {shard} needs every machine to have all inputs: {first}");
-            return Err(Error::argument("--shard", problem, "bring it to this machine, or leave it out on all machines"));
+            return Err(Error::argument(
+                "--shard",
+                problem,
+                "bring it to this machine, or leave it out on all machines",
+            ));
         }
         let mut whole: Vec<Case> = Vec::new();
         let mut known: HashMap<(Vec<(String, String)>, usize), usize> = HashMap::new();

@@ -4,7 +4,6 @@
 use super::workload::{Case, Info};
 use crate::error::{Error, Result};
 use crate::record::journal::{FILE_NAME, Journal};
-use crate::record::merge;
 use crate::record::row::{Input, Key, Row};
 use crate::record::run::Provenance;
 use std::collections::HashMap;
@@ -33,7 +32,7 @@ impl PreviousRun {
         let path = folder.join(FILE_NAME);
         let journal = Journal::read(&path)?;
         let done = journal.rows.iter().enumerate().filter(|(_, row)| row.status.is_final());
-        let role = |row: &Row| merge::role(&journal.provenance, row.device);
+        let role = |row: &Row| journal.provenance.role(row.device);
         let done = done.map(|(index, row)| ((row.key.clone(), role(row)), index)).collect();
         Ok(PreviousRun { path, journal: Some(journal), done, devices: Vec::new() })
     }
@@ -72,7 +71,8 @@ impl PreviousRun {
     pub fn check(&mut self, now: &Provenance) -> Result<()> {
         let Some(before) = self.provenance() else { return Ok(()) };
         let part = before.merged.iter().find(|run| {
-            let devices = run.devices.iter().filter_map(|&device| before.devices.get(device)).map(|device| &device.info);
+            let devices =
+                run.devices.iter().filter_map(|&device| before.devices.get(device)).map(|device| &device.info);
             run.environment.machine() == now.environment.machine()
                 && devices.eq(now.devices.iter().map(|device| &device.info))
                 && run.executable_hash == now.program.executable_hash
@@ -95,7 +95,7 @@ impl PreviousRun {
             format!("it was measured on {}, not on {}, or with other switches", names(before), names(now))
         } else if !is_merged && before.environment.machine() != now.environment.machine() {
             "the machine or its variables (RTBENCH_*, VK_*, LP_*, ...) have changed since".into()
-        } else if before.workload != now.workload || before.plan != now.plan {
+        } else if before.workload != now.workload || !before.plan.is_same(&now.plan) {
             "inputs, axes or the preset's file are not the same any more".into()
         } else {
             self.devices = own_devices.unwrap_or_default();

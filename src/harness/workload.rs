@@ -27,7 +27,8 @@ pub trait Workload: Sync {
         None
     }
 
-    /// What cases demand of a machine, one line each, as far as it is known without a device and without reading inputs.
+    /// What cases demand of a machine, one line each, as far as it is known without a device and without reading
+    /// inputs.
     fn needs(&self, _cases: &[Case], _library: &Library) -> Vec<String> {
         Vec::new()
     }

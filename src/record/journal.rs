@@ -1,6 +1,5 @@
 //! The journal of a run: append-only, one JSON record per line, on disk as soon as it is written.
 
-use super::merge;
 use super::row::{Artifact, Input, Key, Row, SCHEMA, Status};
 use super::run::{End, Provenance, Resumed};
 use crate::error::{Error, Result};
@@ -279,7 +278,7 @@ impl Journal {
             truncated,
             length: bytes.len() as u64,
         };
-        let key_of = |provenance: &Provenance, row: &Row| (row.key.clone(), merge::role(provenance, row.device));
+        let key_of = |provenance: &Provenance, row: &Row| (row.key.clone(), provenance.role(row.device));
         let mut known: HashMap<(Key, usize), usize> = HashMap::new();
         for (number, record) in records {
             match record {

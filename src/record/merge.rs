@@ -74,7 +74,7 @@ pub fn merge(mut parts: Vec<Part>) -> Result<Merged> {
         provenance.plan.work += journal.provenance.plan.work;
         shards.extend(shards_of(&journal.provenance));
         for row in &journal.rows {
-            let role = role(&journal.provenance, row.device);
+            let role = journal.provenance.role(row.device);
             let mut own = row.clone();
             own.device = devices.get(row.device).copied().unwrap_or(row.device);
             match index_of.get(&(row.key.clone(), role)) {
@@ -98,12 +98,6 @@ pub fn merge(mut parts: Vec<Part>) -> Result<Merged> {
     let missing = (1..=count).map(|index| Shard { index, count }).filter(|shard| !shards.contains(shard)).collect();
     let rows = rows.into_iter().map(|(row, _)| row).collect();
     Ok(Merged { provenance: provenance.identified(), inputs, artifacts, rows, missing, duplicates })
-}
-
-/// The index of a row's device in the plan, before runs were merged.
-pub fn role(provenance: &Provenance, device: usize) -> usize {
-    let of = |run: &MergedRun| run.devices.iter().position(|&index| index == device);
-    provenance.merged.iter().find_map(of).unwrap_or(device)
 }
 
 /// The parts of the plan that a run is; none where it is all of it.
@@ -205,8 +199,7 @@ fn check_equal(row: &Row, path: &Path, known: &Row, known_path: &Path) -> Result
     let Some((quantity, own, other)) = what else { return Ok(()) };
     let Key { axes, .. } = &row.key;
     let name: Vec<&str> = axes.values().map(String::as_str).filter(|value| !value.is_empty()).collect();
-    let problem =
-        format!("{}: {quantity} is {own}, but {other} in {}", name.join(" "), known_path.display());
+    let problem = format!("{}: {quantity} is {own}, but {other} in {}", name.join(" "), known_path.display());
     Err(Error::file(path, None, problem, "one of both runs is wrong: measure this case again"))
 }
 

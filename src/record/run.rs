@@ -71,6 +71,12 @@ impl Provenance {
         Provenance { id: blake3::hash(text.as_bytes()).to_hex()[..16].to_owned(), ..self }
     }
 
+    /// The index of a row's device in the plan, before runs were merged.
+    pub fn role(&self, device: usize) -> usize {
+        let of = |run: &MergedRun| run.devices.iter().position(|&index| index == device);
+        self.merged.iter().find_map(of).unwrap_or(device)
+    }
+
     /// Names of the devices, separated by commas.
     pub fn device_names(&self) -> String {
         self.devices.iter().map(|device| device.info.name.as_str()).collect::<Vec<_>>().join(", ")
@@ -180,6 +186,13 @@ pub struct PlanRecord {
     /// The part of the whole plan that was to be measured; absent where it is all of it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shard: Option<Shard>,
+}
+
+impl PlanRecord {
+    /// True for plans of the same cases. The work of a run that was merged from parts does not matter.
+    pub fn is_same(&self, other: &PlanRecord) -> bool {
+        PlanRecord { work: other.work, ..self.clone() } == *other
+    }
 }
 
 /// How a run ended.

@@ -171,12 +171,13 @@ fn a_merged_run_is_the_whole_run() {
 fn what_does_not_belong_together_is_not_merged() {
     let folder = folder();
     let at = |name: &str| folder.path().join(name);
-    let measure = |more: &str, out: &str| ends_with(&run(folder.path(), &format!("sweep {PLAN} {more} --out {out}")), 0);
+    let measure =
+        |more: &str, out: &str| ends_with(&run(folder.path(), &format!("sweep {PLAN} {more} --out {out}")), 0);
     measure("--shard 1/2", "part1");
     measure("--shard 2/2", "part2");
     let journal = std::fs::read_to_string(at("part2").join(FILE_NAME)).unwrap();
     let merge = |words: &[&str]| {
-        refused(&run(folder.path(), "merge part1 other --out merged"), words);
+        refused(&run(folder.path(), "merge part1 part2 other --out merged"), words);
         assert!(!at("merged").exists());
     };
     let edited = |from: &str, to: &str, words: &[&str]| {
@@ -197,7 +198,7 @@ fn what_does_not_belong_together_is_not_merged() {
     merge(&["passes, warm-up", "part"]);
     std::fs::remove_dir_all(at("other")).unwrap();
     std::fs::write(at("mesh.obj"), MESH.replace("0.5", "0.25")).unwrap();
-    measure("--shard 2/2", "other");
+    measure("", "other");
     merge(&["scene mesh.obj is another one than in the other runs"]);
     std::fs::remove_dir_all(at("other")).unwrap();
     merge(&["other", "cannot read"]);
@@ -245,7 +246,9 @@ fn a_sweep_survives_twenty_kills() {
             break;
         }
         let begun = at("run").join(FILE_NAME).is_file();
-        if begun && Journal::read(&at("run").join(FILE_NAME)).is_ok_and(|journal| journal.end.is_some_and(|e| e.complete)) {
+        if begun
+            && Journal::read(&at("run").join(FILE_NAME)).is_ok_and(|journal| journal.end.is_some_and(|e| e.complete))
+        {
             assert_eq!(exact(&at("run")), exact(&at("whole")));
             completed += 1;
             std::fs::remove_dir_all(at("run")).unwrap();

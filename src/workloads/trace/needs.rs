@@ -23,8 +23,7 @@ pub fn of(cases: &[Case], library: &Library) -> Vec<String> {
     }
     let names: BTreeSet<&str> = cases.iter().map(|case| case.input.split(':').next().unwrap_or_default()).collect();
     let entries = names.into_iter().filter_map(catalogue::find);
-    let scenes: Vec<String> =
-        entries.map(|entry| format!("{} ({} triangles)", entry.name, entry.triangles)).collect();
+    let scenes: Vec<String> = entries.map(|entry| format!("{} ({} triangles)", entry.name, entry.triangles)).collect();
     if !scenes.is_empty() {
         let folder = library.scenes_folder.as_ref().map_or("a folder of scenes".into(), |f| f.display().to_string());
         needs.push(format!("the catalogue's {} in {folder}", scenes.join(", ")));

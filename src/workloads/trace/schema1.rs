@@ -149,14 +149,7 @@ impl Run {
             arguments: self.arguments,
             devices: vec![DeviceRecord { info: self.device, reason: self.device_reason }],
             environment: self.environment,
-            plan: PlanRecord {
-                preset,
-                axes,
-                rows: configurations,
-                settings,
-                absent: skipped,
-                ..PlanRecord::default()
-            },
+            plan: PlanRecord { preset, axes, rows: configurations, settings, absent: skipped, ..PlanRecord::default() },
             merged: Vec::new(),
         }
         .identified()

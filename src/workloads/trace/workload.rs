@@ -195,7 +195,7 @@ impl Workload for Trace {
     }
 
     fn needs(&self, cases: &[Case], library: &Library) -> Vec<String> {
-        needs::of(cases, library)
+        super::needs::of(cases, library)
     }
 
     fn open<'a>(&'a self, cases: &[Case], context: &'a Context<'a>) -> Result<Box<dyn Input + 'a>> {
