@@ -96,7 +96,7 @@ impl<'a> Buffers<'a> {
             return Ok(known.clone());
         }
         let view: View = self.views.get(index, from)?;
-        let compressed = view.extensions.given().is_some_and(|e| e.meshopt.0 || e.meshopt_khr.0);
+        let compressed = view.extensions.given().is_some_and(|e| e.is_meshopt());
         let content = match self.content(view.buffer.0, &format!("bufferViews[{index}]"), limits) {
             // The buffer of compressed views may have no bytes.
             Err(fault) if compressed => {
@@ -125,9 +125,11 @@ impl<'a> Buffers<'a> {
             return Ok(known.clone());
         }
         let buffer: Buffer = self.buffers.get(index, from)?;
+        // Views of compressed data have a buffer for what they give, which has no bytes.
+        let has_bytes = !buffer.extensions.given().is_some_and(|e| e.is_meshopt());
         let content = match (buffer.uri, self.blob) {
-            (None, Some(blob)) => Content::Chunk(blob),
-            (None, None) => {
+            (None, Some(blob)) if has_bytes => Content::Chunk(blob),
+            (None, _) => {
                 let problem = format!("buffer {index} has neither a uri nor a binary chunk");
                 return Err(Fault::new(None, problem, "export the file again"));
             }

@@ -31,8 +31,7 @@ const HARMLESS: [&str; 14] = [
 ];
 
 /// Compressed geometry with a fallback, which is read, unless the file requires the extension.
-const WITH_FALLBACK: [&str; 3] =
-    ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"];
+const WITH_FALLBACK: [&str; 3] = ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"];
 
 /// What to do about compressed geometry.
 pub const UNPACK: &str = "remove it with gltf-transform (gltf-transform.dev), or export the file without it";

@@ -53,12 +53,7 @@ impl<'a> Json<'a> {
     }
 
     /// Indexes a list; without one it is empty.
-    pub fn list(
-        self,
-        name: &'static str,
-        element: &'static str,
-        raw: Option<&'a RawValue>,
-    ) -> Result<List<'a>, Fault> {
+    pub fn list(self, name: &'static str, element: &'static str, raw: Option<&'a RawValue>) -> Result<List<'a>, Fault> {
         let Starts { first, starts } = match raw {
             Some(raw) => self.value(name, raw)?,
             None => Starts::default(),
@@ -101,6 +96,18 @@ fn message(error: &serde_json::Error) -> String {
 impl<'a> List<'a> {
     pub fn len(&self) -> usize {
         self.starts.len()
+    }
+
+    /// Parses an element; `None` if it does not exist or has another type. In contrast to [`List::get`], a failure costs
+    /// no time.
+    pub fn parse<T: Deserialize<'a>>(&self, index: usize) -> Option<T> {
+        let start = self.first + *self.starts.get(index)? as usize;
+        T::deserialize(&mut serde_json::Deserializer::from_str(&self.json.text[start..])).ok()
+    }
+
+    /// The problem of an element that [`List::parse`] does not give.
+    pub fn problem<T: Deserialize<'a>>(&self, index: usize, from: impl Display) -> String {
+        self.get::<T>(index, from).map_or_else(|fault| fault.problem, |_| String::new())
     }
 
     /// Parses an element; `from` is the place that names it.

@@ -9,7 +9,7 @@ use glam::{DMat4, DVec3, Vec3};
 use serde::Deserialize;
 
 #[derive(Deserialize)]
-struct Camera<'a> {
+pub struct Camera<'a> {
     #[serde(default, borrow)]
     name: Loose<Text<'a>>,
     perspective: Option<Perspective>,
@@ -20,12 +20,20 @@ struct Perspective {
     yfov: f32,
 }
 
-#[derive(Deserialize)]
-struct PunctualLight<'a> {
-    #[serde(borrow, rename = "type")]
-    kind: Text<'a>,
+#[derive(Clone, Copy, Deserialize)]
+pub struct PunctualLight {
+    #[serde(rename = "type")]
+    kind: Kind,
     color: Option<[f32; 3]>,
     intensity: Option<f32>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Kind {
+    Directional,
+    Point,
+    Spot,
 }
 
 /// The lights of a file.
@@ -37,30 +45,37 @@ pub struct PunctualLights {
     directions: Vec<(Vec3, Vec3)>,
 }
 
-impl<'a> GltfReader<'a> {
+impl GltfReader<'_> {
     /// Takes the camera of a node, if it is the requested one.
     pub(super) fn node_camera(&mut self, node: u32, camera: Loose<Whole>, name: Option<&str>, world: &DMat4) {
         let index = match camera {
             Loose::Given(Whole(index)) => index,
-            Loose::Malformed => return self.notes.malformed(malformed(format!("nodes[{node}].camera"))),
+            Loose::Malformed => return self.notes.malformed(|| format!("nodes[{node}].camera is not an index")),
             Loose::Absent => return,
         };
         if self.scene.camera.is_some() {
             return;
         }
-        let cameras = self.json.list("cameras", "camera", self.root.cameras);
-        let camera = cameras.and_then(|list| list.get::<Camera>(index, format_args!("nodes[{node}].camera")));
-        match camera {
-            Err(fault) => self.notes.malformed(fault),
-            Ok(Camera { name: own, perspective }) => {
-                let own = own.given();
-                let names = [own.as_ref().map(|Text(own)| &**own), name];
-                match perspective {
-                    _ if !self.camera.is_none_or(|wanted| names.contains(&Some(wanted))) => {}
-                    Some(lens) => self.add_camera(lens.yfov, world),
-                    None => self.notes.orthographic = true,
-                }
+        let GltfReader { lists, notes, known_cameras, .. } = self;
+        let camera = known_cameras.entry(index).or_insert_with(|| {
+            let camera = lists.cameras.parse::<Camera>(index);
+            if camera.is_none() {
+                notes.malformed(|| lists.cameras.problem::<Camera>(index, format_args!("nodes[{node}].camera")));
             }
+            camera
+        });
+        let Some(Camera { name: own, perspective }) = camera else { return };
+        let own = match own {
+            Loose::Given(Text(own)) => Some(&**own),
+            Loose::Absent | Loose::Malformed => None,
+        };
+        match perspective {
+            _ if !self.camera.is_none_or(|wanted| [own, name].contains(&Some(wanted))) => {}
+            Some(lens) => {
+                let field_of_view = lens.yfov;
+                self.add_camera(field_of_view, world);
+            }
+            None => self.notes.orthographic = true,
         }
     }
 
@@ -79,38 +94,34 @@ impl<'a> GltfReader<'a> {
     }
 
     /// Adds the light of a node. Spot lights become point lights.
-    pub(super) fn node_light(&mut self, node: u32, light: Loose<NodeLight>, world: &DMat4) {
+    pub(super) fn node_light(&mut self, node: u32, light: Loose<NodeLight>, world: &DMat4) -> Result<(), Fault> {
         let index = match light {
             Loose::Given(NodeLight { light: Whole(index) }) => index,
-            Loose::Malformed => return self.notes.malformed(malformed(format!("the light of nodes[{node}]"))),
-            Loose::Absent => return,
-        };
-        let raw = match &self.root.extensions {
-            Loose::Given(extensions) => match &extensions.lights {
-                Loose::Given(lights) => lights.lights,
-                Loose::Absent | Loose::Malformed => None,
-            },
-            Loose::Absent | Loose::Malformed => None,
-        };
-        let lights = self.json.list("lights", "light", raw);
-        match lights.and_then(|list| list.get::<PunctualLight>(index, format_args!("nodes[{node}]"))) {
-            Ok(PunctualLight { kind, color, intensity }) => {
-                let power = Vec3::from(color.unwrap_or([1.0; 3])) * intensity.unwrap_or(1.0);
-                match &*kind.0 {
-                    "directional" => {
-                        self.lights.directions.push((world.transform_vector3(DVec3::NEG_Z).as_vec3(), power));
-                    }
-                    "point" | "spot" => self.lights.points.push((self.place(world, DVec3::ZERO), power)),
-                    _ => self.notes.malformed(malformed(format!("the type of lights[{index}]"))),
-                }
+            Loose::Malformed => {
+                self.notes.malformed(|| format!("nodes[{node}] has a light that is not an index"));
+                return Ok(());
             }
-            Err(fault) => self.notes.malformed(fault),
+            Loose::Absent => return Ok(()),
+        };
+        let GltfReader { lists, notes, known_lights, .. } = self;
+        let light = *known_lights.entry(index).or_insert_with(|| {
+            let light = lists.lights.parse::<PunctualLight>(index);
+            if light.is_none() {
+                notes.malformed(|| lists.lights.problem::<PunctualLight>(index, format_args!("nodes[{node}]")));
+            }
+            light
+        });
+        let Some(PunctualLight { kind, color, intensity }) = light else { return Ok(()) };
+        self.limits.repeat(4 * size_of::<Light>())?;
+        let power = Vec3::from(color.unwrap_or([1.0; 3])) * intensity.unwrap_or(1.0);
+        match kind {
+            Kind::Directional => {
+                self.lights.directions.push((world.transform_vector3(DVec3::NEG_Z).as_vec3(), power));
+            }
+            Kind::Point | Kind::Spot => self.lights.points.push((self.place(world, DVec3::ZERO), power)),
         }
+        Ok(())
     }
-}
-
-fn malformed(place: String) -> Fault {
-    Fault::new(None, format!("{place} is not valid"), "")
 }
 
 impl PunctualLights {

@@ -121,8 +121,7 @@ impl<'a> GltfReader<'a> {
             None => positions.count,
         };
         if let Some(index) = primitive.normals {
-            let normals =
-                accessors.get(index, Use::Normals, format_args!("{place}.attributes.NORMAL"), limits)?.count;
+            let normals = accessors.get(index, Use::Normals, format_args!("{place}.attributes.NORMAL"), limits)?.count;
             if normals != positions.count {
                 let problem = format!("{place} has different numbers of normals and positions");
                 return Err(Fault::new(None, problem, "export the file again"));

@@ -38,6 +38,7 @@ use crate::error::Result;
 use accessor::Accessors;
 use buffers::Buffers;
 use json::{Json, Loose};
+use notes::Notes;
 use reader::{GltfReader, Lists};
 use schema::{Root, Text};
 use std::path::Path;
@@ -79,9 +80,26 @@ fn scene(path: &Path, bytes: &[u8], options: &Options) -> std::result::Result<Sc
     let buffers = json.list("buffers", "buffer", root.buffers)?;
     let buffers = Buffers::new((path, bytes), options, blob, views, buffers);
     let accessors = Accessors::new(json.list("accessors", "accessor", root.accessors)?, buffers);
-    let lists =
-        Lists { nodes: json.list("nodes", "node", root.nodes)?, meshes: json.list("meshes", "mesh", root.meshes)? };
+    let lights = match &root.extensions {
+        Loose::Given(schema::RootExtensions { lights: Loose::Given(lights) }) => lights.lights,
+        _ => None,
+    };
+    let mut notes = Notes::default();
+    let mut optional = |name, element, raw| match json.list(name, element, raw) {
+        Ok(list) => Ok(list),
+        Err(fault) => {
+            notes.malformed(|| fault.problem);
+            json.list(name, element, None)
+        }
+    };
+    let lists = Lists {
+        nodes: json.list("nodes", "node", root.nodes)?,
+        meshes: json.list("meshes", "mesh", root.meshes)?,
+        cameras: optional("cameras", "camera", root.cameras)?,
+        lights: optional("lights", "light", lights)?,
+    };
     let mut reader = GltfReader::new((json, &root), lists, accessors, limits, options);
+    reader.notes = notes;
     reader.scene.warnings = warnings;
     reader.materials()?;
     reader.scene()?;

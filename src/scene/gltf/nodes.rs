@@ -119,7 +119,7 @@ impl<'a> GltfReader<'a> {
         let name = node.name.given().map(|Text(name)| name);
         self.node_camera(index, node.camera, name.as_deref(), world);
         if let Some(extensions) = extensions {
-            self.node_light(index, extensions.light, world);
+            self.node_light(index, extensions.light, world)?;
         }
         Ok(())
     }

@@ -1,7 +1,5 @@
 //! What was noticed while reading, which becomes warnings.
 
-use crate::scene::text::Fault;
-
 /// Counts of what was ignored or computed.
 #[derive(Default)]
 pub struct Notes {
@@ -21,10 +19,10 @@ pub struct Notes {
 }
 
 impl Notes {
-    /// Notes a fault that concerns no geometry.
-    pub fn malformed(&mut self, fault: Fault) {
+    /// Notes a fault that concerns no geometry. Only the first one is described, because that takes time.
+    pub fn malformed(&mut self, fault: impl FnOnce() -> String) {
         self.malformed_count += 1;
-        self.malformed.get_or_insert(fault.problem);
+        self.malformed.get_or_insert_with(fault);
     }
 
     /// The warnings; `has_camera` is true if the scene has one.
@@ -37,10 +35,7 @@ impl Notes {
         warn(self.orthographic && !has_camera, "orthographic camera ignored".into());
         warn(self.coloured, "vertex colours ignored".into());
         warn(self.skinned, "skins ignored: meshes are in their rest pose".into());
-        warn(
-            repaired > 0,
-            format!("{repaired} normals in the file are zero or not finite: computed instead"),
-        );
+        warn(repaired > 0, format!("{repaired} normals in the file are zero or not finite: computed instead"));
         warn(dropped > 0, format!("{dropped} triangles dropped: a corner is not finite"));
         if let Some(first) = &self.malformed {
             let others = match self.malformed_count - 1 {

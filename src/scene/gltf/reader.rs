@@ -2,7 +2,7 @@
 
 use super::accessor::{Accessors, Use};
 use super::json::{Json, List, Loose, Whole};
-use super::lights::PunctualLights;
+use super::lights::{Camera, PunctualLight, PunctualLights};
 use super::material::GltfMaterial;
 use super::nodes::PlacedMesh;
 use super::notes::Notes;
@@ -17,10 +17,12 @@ use glam::{DMat3, DMat4, DQuat, DVec3, Vec3};
 use std::collections::HashMap;
 use std::rc::Rc;
 
-/// The lists of the JSON that geometry needs.
+/// The lists of the JSON that nodes refer to.
 pub struct Lists<'a> {
     pub nodes: List<'a>,
     pub meshes: List<'a>,
+    pub cameras: List<'a>,
+    pub lights: List<'a>,
 }
 
 /// The scene under construction, and the state of the traversal.
@@ -42,6 +44,8 @@ pub struct GltfReader<'a> {
     pub(super) limits: Limits,
     /// Name of the requested camera; `None` requests the first.
     pub(super) camera: Option<&'a str>,
+    pub(super) known_cameras: HashMap<usize, Option<Camera<'a>>, RandomState>,
+    pub(super) known_lights: HashMap<usize, Option<PunctualLight>, RandomState>,
 }
 
 impl<'a> GltfReader<'a> {
@@ -68,6 +72,8 @@ impl<'a> GltfReader<'a> {
             notes: Notes::default(),
             limits,
             camera: options.camera.as_deref(),
+            known_cameras: HashMap::default(),
+            known_lights: HashMap::default(),
         }
     }
 
@@ -80,7 +86,10 @@ impl<'a> GltfReader<'a> {
     pub fn materials(&mut self) -> Result<(), Fault> {
         let materials = match self.json.list("materials", "material", self.root.materials) {
             Ok(materials) => materials,
-            Err(fault) => return Ok(self.notes.malformed(fault)),
+            Err(fault) => {
+                self.notes.malformed(|| fault.problem);
+                return Ok(());
+            }
         };
         self.materials = materials.len();
         self.limits.keep(self.materials * (size_of::<Material>() + size_of::<Vec3>()))?;
@@ -88,14 +97,14 @@ impl<'a> GltfReader<'a> {
         self.emission.reserve_exact(self.materials);
         let (mut textures, mut transparent) = (false, false);
         for index in 0..self.materials {
-            let (material, emission) = match materials.get::<GltfMaterial>(index, "") {
-                Ok(material) => {
+            let (material, emission) = match materials.parse::<GltfMaterial>(index) {
+                Some(material) => {
                     textures |= material.has_texture();
                     transparent |= material.is_transparent();
                     material.convert()
                 }
-                Err(fault) => {
-                    self.notes.malformed(fault);
+                None => {
+                    self.notes.malformed(|| materials.problem::<GltfMaterial>(index, ""));
                     (Material::neutral(), Vec3::ZERO)
                 }
             };
@@ -210,8 +219,9 @@ impl<'a> GltfReader<'a> {
             return index as u32;
         }
         if primitive.material != Loose::Absent {
-            let problem = format!("meshes[{mesh}].primitives[{}] has a material that does not exist", primitive.index);
-            self.notes.malformed(Fault::new(None, problem, ""));
+            self.notes.malformed(|| {
+                format!("meshes[{mesh}].primitives[{}] has a material that does not exist", primitive.index)
+            });
         }
         *self.default_material.get_or_insert_with(|| {
             self.scene.materials.push(Material::neutral());

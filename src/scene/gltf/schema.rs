@@ -300,15 +300,22 @@ pub struct View {
     pub byte_length: Whole,
     pub byte_stride: Option<Whole>,
     #[serde(default)]
-    pub extensions: Loose<ViewExtensions>,
+    pub extensions: Loose<Compression>,
 }
 
+/// Extensions of buffer views and buffers.
 #[derive(Deserialize)]
-pub struct ViewExtensions {
+pub struct Compression {
     #[serde(default, rename = "EXT_meshopt_compression")]
-    pub meshopt: Present,
+    meshopt: Present,
     #[serde(default, rename = "KHR_meshopt_compression")]
-    pub meshopt_khr: Present,
+    meshopt_khr: Present,
+}
+
+impl Compression {
+    pub fn is_meshopt(&self) -> bool {
+        self.meshopt.0 || self.meshopt_khr.0
+    }
 }
 
 #[derive(Deserialize)]
@@ -317,6 +324,8 @@ pub struct Buffer<'a> {
     #[serde(borrow)]
     pub uri: Option<Uri<'a>>,
     pub byte_length: Option<Whole>,
+    #[serde(default)]
+    pub extensions: Loose<Compression>,
 }
 
 /// A string without escapes is borrowed: it may hold megabytes.

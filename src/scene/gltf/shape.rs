@@ -8,6 +8,9 @@ use crate::scene::Triangle;
 use crate::scene::text::Fault;
 use glam::Vec3;
 
+/// Bytes of JSON that are parsed again for a node in the time that a byte of memory counts for.
+const BYTES_PER_CHARGE: usize = 4;
+
 /// A primitive in the coordinates of its mesh.
 pub struct Shape {
     pub positions: Vec<Vec3>,
@@ -31,6 +34,9 @@ impl<'a> GltfReader<'a> {
             (None, Some(raw)) => self.json.value(format_args!("meshes[{}].weights", place.mesh), raw)?,
             (None, None) => None,
         };
+        let given = place.weights.or(mesh.weights).map_or(0, |raw| raw.get().len());
+        // This bounds the time: many nodes may share a long list.
+        self.limits.keep(given / BYTES_PER_CHARGE)?;
         Ok(weights.unwrap_or_default())
     }
 
@@ -49,6 +55,7 @@ impl<'a> GltfReader<'a> {
             None => None,
         };
         if let Some(raw) = primitive.targets.filter(|_| weights.iter().any(|&weight| weight != 0.0)) {
+            self.limits.keep(raw.get().len() / BYTES_PER_CHARGE)?;
             let targets = self.json.list("targets", "morph target", Some(raw))?;
             for (index, &weight) in weights.iter().enumerate().take(targets.len()).filter(|(_, w)| **w != 0.0) {
                 let target: Attributes = targets.get(index, &place)?;
@@ -86,13 +93,7 @@ impl<'a> GltfReader<'a> {
     }
 
     /// Adds the weighted elements of a morph target.
-    fn add_weighted(
-        &mut self,
-        elements: &mut [Vec3],
-        accessor: usize,
-        weight: f32,
-        place: &str,
-    ) -> Result<(), Fault> {
+    fn add_weighted(&mut self, elements: &mut [Vec3], accessor: usize, weight: f32, place: &str) -> Result<(), Fault> {
         let offsets = self.accessors.get(accessor, Use::Vectors, place, &mut self.limits)?;
         if offsets.count != elements.len() {
             let problem = format!("{place} has {} elements, but the primitive {}", offsets.count, elements.len());

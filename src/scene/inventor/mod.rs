@@ -59,7 +59,8 @@ const WORK: usize = 4_000_000;
 const WORK_PER_BYTE: usize = 16;
 
 /// What to do about too many repetitions.
-const REPEATED: &str = "allow more with the option memory=SIZE, as in FILE:memory=8G, or reduce the repetitions of nodes";
+const REPEATED: &str =
+    "allow more with the option memory=SIZE, as in FILE:memory=8G, or reduce the repetitions of nodes";
 
 /// Number of faces around a corner that can be examined in the time of one value.
 const FACES_PER_VALUE: usize = 8;
