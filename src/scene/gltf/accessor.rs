@@ -220,6 +220,8 @@ impl<'a> Accessors<'a> {
             if !matches!(kind, Component::U8 | Component::U16 | Component::U32) {
                 return Err(accessor.fault("has sparse indices that are not unsigned integers"));
             }
+            // This bounds the time: many nodes may share many elements that replace few.
+            limits.keep(count / 2)?;
             let places = self.buffers.view(indices.buffer_view.0, &format!("{from}.sparse.indices"), limits)?;
             let news = self.buffers.view(values.buffer_view.0, &format!("{from}.sparse.values"), limits)?;
             let places = slots(&places, indices.byte_offset.unwrap_or_default().0, kind.size(), count);

@@ -13,14 +13,13 @@ const FAMILIES: [&str; 7] =
     ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_animation_", "KHR_xmp", "MSFT_texture_"];
 
 /// Further extensions that touch no geometry. They are ignored, but a file that requires one is refused.
-const HARMLESS: [&str; 14] = [
+const HARMLESS: [&str; 13] = [
     "EXT_lights_ies",
     "EXT_lights_image_based",
     "EXT_feature_metadata",
     "EXT_instance_features",
     "EXT_mesh_features",
     "EXT_structural_metadata",
-    "KHR_accessor_float64",
     "KHR_audio_emitter",
     "KHR_interactivity",
     "KHR_node_hoverability",

@@ -9,7 +9,7 @@ use crate::math::Vertex;
 use crate::scene::text::Fault;
 use crate::scene::{MAX_ELEMENTS, Triangle, lamps};
 use foldhash::fast::RandomState;
-use glam::Vec3;
+use glam::{DMat4, Vec3};
 use std::collections::HashMap;
 use std::rc::Rc;
 
@@ -37,8 +37,8 @@ const TEMPORARY_SHARE: usize = 64;
 /// Temporary memory in bytes per normal of the file while it is read and, if it is not valid, computed.
 const NORMALS_NOW: usize = size_of::<Vec3>() + size_of::<Vertex>() + 2 * size_of::<usize>();
 
-/// Temporary memory in bytes per instance: its translation, rotation and scale.
-const PER_INSTANCE: usize = 2 * size_of::<Vec3>() + 4 * size_of::<f64>();
+/// Temporary memory in bytes per instance: its translation, rotation and scale, and its transform.
+const PER_INSTANCE: usize = 2 * size_of::<Vec3>() + 4 * size_of::<f64>() + size_of::<DMat4>();
 
 impl<'a> GltfReader<'a> {
     /// Refuses these meshes if they need more memory than they may take, and reserves exactly that memory. Every
@@ -137,7 +137,7 @@ impl<'a> GltfReader<'a> {
         let vertices = if given { positions } else { triangles.saturating_mul(3) };
         // Morph targets take positions and normals again.
         let copies = if primitive.targets.is_some() { 2 } else { 1 };
-        let temporary = (positions.saturating_mul(copies * size_of::<Vec3>()))
+        let temporary = (positions.saturating_mul(copies * size_of::<Vec3>() + size_of::<Option<u32>>()))
             .saturating_add(corners.saturating_mul(size_of::<u32>()))
             .saturating_add(triangles.saturating_mul(size_of::<Triangle>()))
             .saturating_add(if given { positions.saturating_mul(copies * NORMALS_NOW) } else { 0 });

@@ -357,6 +357,16 @@ fn faults_have_their_place_and_line() {
         let message = refusal(try_load(&with(&[changes])));
         assert!(message.contains(words), "{words}: {message}");
     }
+    // The place is also found behind properties that are parsed later.
+    let mut rich = rich();
+    rich["nodes"][0]["weights"] = json!([0]);
+    rich["nodes"][0]["translation"] = json!([0, "x", 0]);
+    let message = refusal(try_load(&rich));
+    assert!(message.contains("nodes[0].translation[1]: invalid type: string"), "{message}");
+    rich["nodes"][0]["translation"] = json!([0, 0, 0]);
+    rich["meshes"][0]["primitives"][0]["indices"] = json!("x");
+    let message = refusal(try_load(&rich));
+    assert!(message.contains("meshes[0].primitives[0].indices: invalid type: string"), "{message}");
     for text in ["", "[]", "5", "{", "{}", "nonsense", "{\"asset\":{\"version\":\"2.0\"}} x"] {
         let message = refusal(gltf::read_bytes(Path::new("a.gltf"), text.as_bytes(), &Options::default()));
         assert!(message.contains("not glTF") || message.contains("no asset.version"), "{text}: {message}");

@@ -187,25 +187,34 @@ fn meshes_with_a_material_library_survive_every_mutation() {
     }
 }
 
-#[test]
-fn gltf_of_both_kinds_survives_every_mutation() {
-    let text = include_str!("../../data/all.gltf");
+/// Tests the variants of a glTF file with a single buffer that is used, and of the same file as a GLB.
+fn load_both_kinds(name: &str, text: &str) -> rtbench::scene::Scene {
     let mut document: serde_json::Value = serde_json::from_str(text).unwrap();
     let uri = document["buffers"][0].as_object_mut().unwrap().remove("uri").unwrap();
     let (_, data) = uri.as_str().unwrap().split_once(',').unwrap();
     let buffer = base64::engine::general_purpose::STANDARD.decode(data).unwrap();
     let binary = gltf::glb(&document, &buffer);
-    let files = Files::new(&[("all.gltf", text)]);
-    files.write("all.glb", &binary);
-    let [a, b] = ["all.gltf", "all.glb"].map(|name| files.load(name).unwrap());
-    assert!(
-        a.content_hash() == b.content_hash() && a.triangles.len() >= 8 && a.camera.is_some() && a.lights.len() == 3
-    );
-    load_own_variants(&Case {
-        variants: variants(OWN_VARIANTS),
-        ..Case::new("all.gltf", text.as_bytes(), mutate::text)
-    });
-    load_own_variants(&Case { variants: variants(OWN_VARIANTS), ..Case::new("all.glb", &binary, mutate::bytes) });
+    let [text_name, binary_name] = ["gltf", "glb"].map(|extension| format!("{name}.{extension}"));
+    let files = Files::new(&[(&text_name, text)]);
+    files.write(&binary_name, &binary);
+    let [a, b] = [&text_name, &binary_name].map(|name| files.load(name).unwrap());
+    assert_eq!(a.content_hash(), b.content_hash());
+    let many = variants(OWN_VARIANTS);
+    load_own_variants(&Case { variants: many, ..Case::new(&text_name, text.as_bytes(), mutate::text) });
+    load_own_variants(&Case { variants: many, ..Case::new(&binary_name, &binary, mutate::bytes) });
+    a
+}
+
+#[test]
+fn gltf_of_both_kinds_survives_every_mutation() {
+    let all = load_both_kinds("all", include_str!("../../data/all.gltf"));
+    assert!(all.triangles.len() >= 8 && all.camera.is_some() && all.lights.len() == 3);
+}
+
+#[test]
+fn gltf_with_extensions_survives_every_mutation() {
+    let all = load_both_kinds("extensions", include_str!("../../data/extensions.gltf"));
+    assert!(all.triangles.len() == 3 * 2 + 2 + 2 && all.lights.len() == 1, "{:?}", all.warnings);
 }
 
 #[test]
