@@ -135,7 +135,7 @@ impl<'a> Buffers<'a> {
             }
             (Some(Uri(uri)), _) => match uri.strip_prefix("data:") {
                 Some(data) => {
-                    limits.keep(data.len())?;
+                    limits.keep(2 * data.len())?;
                     Content::Owned(Rc::new(decode(data)?))
                 }
                 None => self.file(&uri, limits)?,
@@ -159,8 +159,12 @@ impl<'a> Buffers<'a> {
             let problem = format!("buffer {label} is a web address");
             return Err(Fault::new(None, problem, "download it, and name the file in the scene"));
         }
+        let folder = self.path.parent().unwrap_or(Path::new(""));
+        // Some exporters write the path as Windows does.
+        let windows = name.contains('\\') && !folder.join(&*name).exists();
+        let name = if windows { name.replace('\\', "/").into() } else { name };
         let leaves = Path::new(&*name).components().any(|c| !matches!(c, Component::Normal(_) | Component::CurDir));
-        let file = self.path.parent().unwrap_or(Path::new("")).join(&*name);
+        let file = folder.join(&*name);
         let folders = self.folders.get_or_insert_with(|| SceneFolders::of(self.path));
         if !self.options.outside && (leaves || !folders.contain(&file)) {
             let problem = format!("buffer {label} lies outside of the scene's folder");
@@ -190,8 +194,14 @@ fn decode(data: &str) -> Result<Vec<u8>, Fault> {
     };
     // Many exporters omit the padding.
     let config = GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent);
-    GeneralPurpose::new(&base64::alphabet::STANDARD, config)
+    let engine = GeneralPurpose::new(&base64::alphabet::STANDARD, config);
+    let without_escapes = |_| {
+        let bytes = percent_encoding::percent_decode_str(text).filter(|b| !b.is_ascii_whitespace());
+        engine.decode(bytes.collect::<Vec<u8>>())
+    };
+    engine
         .decode(text)
+        .or_else(without_escapes)
         .map_err(|e| Fault::new(None, format!("a buffer's data URI is broken: {e}"), HINT))
 }
 

@@ -43,7 +43,7 @@ pub fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Fault> {
             return Err(Fault::new(None, problem, "export the file again"));
         };
         match &head[4..] {
-            b"JSON" => json = json.or(Some(content)),
+            b"JSON" => json = json.or(Some(content.strip_prefix("\u{feff}".as_bytes()).unwrap_or(content))),
             b"BIN\0" => blob = blob.or(Some(content)),
             _ => {}
         }
@@ -60,13 +60,42 @@ pub fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Fault> {
 /// # Errors
 /// The JSON is UTF-16.
 pub fn characters(json: &[u8]) -> Result<Cow<'_, str>, Fault> {
-    let json = json.strip_prefix("\u{feff}".as_bytes()).unwrap_or(json);
     if json.starts_with(b"\xff\xfe") || json.starts_with(b"\xfe\xff") {
         return Err(Fault::new(None, "the JSON is encoded as UTF-16", "save the file as UTF-8"));
     }
     // Some exporters fill the chunk with zeros instead of spaces.
     let end = json.iter().rposition(|&b| b != 0).map_or(0, |last| last + 1);
     Ok(String::from_utf8_lossy(&json[..end]))
+}
+
+/// The JSON with `null` in place of numbers that JSON does not have, such as NaN in bounds; `None` if it has none. Lines
+/// keep their numbers.
+pub fn without_nan(text: &str) -> Option<String> {
+    const NONE: [&str; 6] = ["-Infinity", "Infinity", "-NaN", "NaN", "-nan", "nan"];
+    let (mut result, mut kept, mut at) = (String::new(), 0, 0);
+    let bytes = text.as_bytes();
+    while at < bytes.len() {
+        match bytes[at] {
+            b'"' => {
+                at += 1;
+                while at < bytes.len() && bytes[at] != b'"' {
+                    at += if bytes[at] == b'\\' { 2 } else { 1 };
+                }
+                at += 1;
+            }
+            b'-' | b'I' | b'N' | b'n' => match NONE.iter().find(|none| bytes[at..].starts_with(none.as_bytes())) {
+                Some(none) => {
+                    result += &text[kept..at];
+                    result += "null";
+                    at += none.len();
+                    kept = at;
+                }
+                None => at += 1,
+            },
+            _ => at += 1,
+        }
+    }
+    (kept > 0).then(|| result + &text[kept..])
 }
 
 /// Refuses versions other than 2.0. `least` is the version that a reader needs at least.

@@ -120,13 +120,10 @@ impl<'a> GltfReader<'a> {
             Some(index) => accessors.get(index, Use::Indices, format_args!("{place}.indices"), limits)?.count,
             None => positions.count,
         };
-        if let Some(index) = primitive.normals {
-            let normals = accessors.get(index, Use::Normals, format_args!("{place}.attributes.NORMAL"), limits)?.count;
-            if normals != positions.count {
-                let problem = format!("{place} has different numbers of normals and positions");
-                return Err(Fault::new(None, problem, "export the file again"));
-            }
-        }
+        let normals = match primitive.normals {
+            Some(index) => accessors.get(index, Use::Normals, format_args!("{place}.attributes.NORMAL"), limits)?.count,
+            None => 0,
+        };
         let positions = positions.count;
         let triangles = match primitive.mode {
             Mode::List => corners / 3,
@@ -140,7 +137,7 @@ impl<'a> GltfReader<'a> {
         let temporary = (positions.saturating_mul(copies * size_of::<Vec3>() + size_of::<Option<u32>>()))
             .saturating_add(corners.saturating_mul(size_of::<u32>()))
             .saturating_add(triangles.saturating_mul(size_of::<Triangle>()))
-            .saturating_add(if given { positions.saturating_mul(copies * NORMALS_NOW) } else { 0 });
+            .saturating_add(positions.max(normals).saturating_mul(if given { copies * NORMALS_NOW } else { 0 }));
         let permanent = vertices
             .saturating_mul(size_of::<Vertex>())
             .saturating_add(triangles.saturating_mul(size_of::<Triangle>()))

@@ -65,8 +65,15 @@ fn scene(path: &Path, bytes: &[u8], options: &Options) -> std::result::Result<Sc
     let (json, blob) = container::split(bytes)?;
     let text = container::characters(json)?;
     let is_text = !bytes.starts_with(b"glTF");
-    let json = Json::new(&text, is_text);
-    let root: Root = json.root()?;
+    let repaired;
+    let (json, root) = match Json::new(&text, is_text).root::<Root>() {
+        Ok(root) => (Json::new(&text, is_text), root),
+        Err(fault) => {
+            repaired = container::without_nan(&text).ok_or(fault)?;
+            let json = Json::new(&repaired, is_text);
+            (json, json.root()?)
+        }
+    };
     let version = |which: for<'r> fn(&'r schema::Asset<'r>) -> &'r Loose<Text<'r>>| match &root.asset {
         Loose::Given(asset) => match which(asset) {
             Loose::Given(Text(version)) => Some(&**version),

@@ -93,8 +93,9 @@ impl<'a> GltfReader<'a> {
         };
         self.materials = materials.len();
         self.limits.keep(self.materials * (size_of::<Material>() + size_of::<Vec3>()))?;
-        self.scene.materials.reserve_exact(self.materials);
-        self.emission.reserve_exact(self.materials);
+        // One more for primitives without a material
+        self.scene.materials.reserve_exact(self.materials + 1);
+        self.emission.reserve_exact(self.materials + 1);
         let (mut textures, mut transparent) = (false, false);
         for index in 0..self.materials {
             let (material, emission) = match materials.parse::<GltfMaterial>(index) {

@@ -234,7 +234,10 @@ impl<'de: 'a, 'a> Deserialize<'de> for Primitives<'a> {
                         4 => Some(Mode::List),
                         5 => Some(Mode::Strip),
                         6 => Some(Mode::Fan),
-                        other => return Err(A::Error::custom(format!("the mode {other} is not 0 to 6"))),
+                        other => {
+                            let problem = format!("primitive {index} has the mode {other}, which is not 0 to 6");
+                            return Err(A::Error::custom(problem));
+                        }
                     };
                     let Attributes { positions, normals, colours } = attributes.unwrap_or_default();
                     match (mode, positions) {

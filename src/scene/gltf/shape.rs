@@ -54,6 +54,10 @@ impl<'a> GltfReader<'a> {
             Some(index) => Some(self.vectors(index, Use::Normals, &place)?),
             None => None,
         };
+        if normals.as_ref().is_some_and(|normals| normals.len() != positions.len()) {
+            let problem = format!("{place} has different numbers of normals and positions");
+            return Err(Fault::new(None, problem, "export the file again"));
+        }
         if let Some(raw) = primitive.targets.filter(|_| weights.iter().any(|&weight| weight != 0.0)) {
             self.limits.keep(raw.get().len() / BYTES_PER_CHARGE)?;
             let targets = self.json.list("targets", "morph target", Some(raw))?;

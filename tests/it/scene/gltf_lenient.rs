@@ -326,6 +326,53 @@ fn names_may_be_in_any_encoding() {
 }
 
 #[test]
+fn numbers_that_json_does_not_have_are_null() {
+    let mut bare = with(&[
+        ("/accessors/0/min", json!([7771, 7772, 7773])),
+        ("/nodes/0/name", json!("a \"NaN\" \\")),
+        ("/nodes/0/extras", json!([7774, "NaN", -1])),
+    ])
+    .to_string();
+    for (number, bare_number) in [("7771", "-Infinity"), ("7772", "NaN"), ("7773", "Infinity"), ("7774", "-nan")] {
+        bare = bare.replace(number, bare_number);
+    }
+    let read = |text: &str| {
+        let mut chunk = text.as_bytes().to_vec();
+        chunk.resize(chunk.len().next_multiple_of(4), b' ');
+        let whole = chunks(&[(b"JSON", &chunk), (b"BIN\0", &bytes())]);
+        gltf::read_bytes(Path::new("a.glb"), &whole, &Options::default())
+    };
+    is_triangle(&read(&bare).unwrap(), "NaN");
+    let message = refusal(read(&document_with_nan()));
+    assert!(message.contains("nodes[0].translation[1]: invalid type: null"), "{message}");
+}
+
+/// A document with NaN where it is read.
+fn document_with_nan() -> String {
+    with(&[("/nodes/0/translation", json!([0, 7777, 0]))]).to_string().replace("7777", "NaN")
+}
+
+#[test]
+fn uris_are_read_as_exporters_write_them() {
+    use base64::Engine;
+    let data = base64::engine::general_purpose::STANDARD.encode(bytes());
+    let files = Files::new(&[]);
+    files.write("sub/b.bin", &bytes());
+    let lines = data.as_bytes().chunks(20).map(|line| std::str::from_utf8(line).unwrap()).collect::<Vec<_>>();
+    for uri in [
+        "sub\\b.bin",
+        ".\\sub\\b.bin",
+        &format!("data:;base64,{}", lines.join("\n")),
+        &format!("data:application/gltf-buffer;base64,{}", data.replace('/', "%2F").replace('=', "%3D")),
+    ] {
+        files.write("a.gltf", with(&[("/buffers/0/uri", json!(uri))]).to_string().as_bytes());
+        is_triangle(&files.load("a.gltf").unwrap_or_else(|error| panic!("{uri}: {error}")), uri);
+    }
+    files.write("a.gltf", with(&[("/buffers/0/uri", json!("..\\scene\\sub\\b.bin"))]).to_string().as_bytes());
+    assert!(refusal(files.load("a.gltf")).contains("outside=yes"));
+}
+
+#[test]
 fn faults_have_their_place_and_line() {
     let files = Files::new(&[]);
     files.write("b.bin", &bytes());
@@ -344,7 +391,10 @@ fn faults_have_their_place_and_line() {
         (("/scenes/0/nodes", json!([3])), "the scene names node 3, which does not exist"),
         (("/scene", json!(4)), "scene names scene 4, which does not exist"),
         (("/scene", json!("first")), "scene: invalid type: string"),
-        (("/meshes/0/primitives/0/mode", json!(7)), "meshes[0].primitives[0]: the mode 7 is not 0 to 6"),
+        (
+            ("/meshes/0/primitives/0/mode", json!(7)),
+            "meshes[0].primitives: primitive 0 has the mode 7, which is not 0 to 6",
+        ),
         (("/meshes/0/primitives/0/indices", json!({})), "meshes[0].primitives[0].indices: invalid type: map"),
         (("/meshes", json!({})), "meshes: invalid type: map, expected an array"),
         (("/accessors/0/bufferView", json!(9)), "accessors[0] names buffer view 9, which does not exist"),
