@@ -85,7 +85,7 @@ fn files_below(folder: &str) -> Vec<PathBuf> {
 }
 
 /// Dependencies that decide what a reader makes of a file.
-const READER_PACKAGES: [&str; 6] = ["glam", "earcut", "gltf", "gltf-json", "base64", "percent-encoding"];
+const READER_PACKAGES: [&str; 5] = ["glam", "earcut", "serde_json", "base64", "percent-encoding"];
 
 /// True for a package of `Cargo.lock` that is one of them.
 fn is_of_readers(package: &str) -> bool {

@@ -5,6 +5,7 @@
 //! module and a line in [`FORMATS`].
 
 mod aff;
+mod budget;
 pub mod cache;
 pub mod catalogue;
 mod extent;

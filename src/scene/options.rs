@@ -1,6 +1,6 @@
 //! Options for reading scene files, common to all formats.
 
-use super::did_you_mean;
+use super::{budget, did_you_mean};
 use crate::error::{Error, Result};
 use glam::DVec3;
 
@@ -32,6 +32,9 @@ pub struct Options {
     pub offset: Option<DVec3>,
     /// OBJ: name of a material to treat as emissive, for files of which the exporter has lost the emission.
     pub lamp: Option<String>,
+    /// Memory in bytes that what a file repeats may take; `None` means half of the memory that the process may use. It
+    /// changes nothing in a scene and is no part of its name.
+    pub memory: Option<usize>,
 }
 
 /// The axis of a file that points up.
@@ -119,6 +122,7 @@ impl Default for Options {
             origin: Origin::Auto,
             offset: None,
             lamp: None,
+            memory: None,
         }
     }
 }
@@ -128,11 +132,11 @@ pub const MAX_SEGMENTS: u32 = 1024;
 
 impl Options {
     /// The names of all options.
-    pub const KEYS: [&str; 10] =
-        ["time", "segments", "cones", "outside", "up", "scale", "origin", "camera", "fov", "lamp"];
+    pub const KEYS: [&str; 11] =
+        ["time", "segments", "cones", "outside", "up", "scale", "origin", "camera", "fov", "lamp", "memory"];
 
     /// The options that all formats support; [`super::FORMATS`] lists those of each format.
-    pub const COMMON: [&str; 3] = ["up", "scale", "fov"];
+    pub const COMMON: [&str; 4] = ["up", "scale", "fov", "memory"];
 
     /// Parses `key=value,...`; errors refer to the scene `spec`.
     ///
@@ -177,6 +181,10 @@ impl Options {
                     Ok(fov) if (0.1..=179.0).contains(&fov) => options.fov = Some(fov),
                     _ => return Err(wrong("give 0.1 to 179 degrees")),
                 },
+                "memory" => match budget::size(value) {
+                    Some(bytes) => options.memory = Some(bytes),
+                    None => return Err(wrong("give a size, as in memory=64M or memory=2G")),
+                },
                 "camera" => match value {
                     "" => return Err(wrong("give the name of a camera")),
                     name => options.camera = Some(name.to_owned()),
@@ -192,6 +200,11 @@ impl Options {
             }
         }
         Ok(options)
+    }
+
+    /// Memory in bytes that what a file repeats may take.
+    pub fn repeatable_bytes(&self) -> usize {
+        self.memory.unwrap_or_else(|| budget::process_bytes() / 2)
     }
 
     /// The options that differ from those of `base` as `:key=value,...`; empty if none differs.

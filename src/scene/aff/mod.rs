@@ -83,7 +83,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
         detail: 0,
         time: 0.0,
         hidden: 0,
-        mesh: MeshBuilder::new(options.offset),
+        mesh: MeshBuilder::new(options),
     };
     reader.file(path, &bytes)?;
     let first_key = || reader.keys.values().filter_map(Keyframes::first_time).min_by(f64::total_cmp);

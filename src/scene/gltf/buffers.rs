@@ -1,127 +1,208 @@
-//! Loads the buffers, which hold the bytes of accessors.
+//! Loads buffers, which hold the bytes of accessors, when they are first used.
 
-use super::Problem;
+use super::json::{List, Whole};
+use super::schema::{Buffer, Uri, View};
+use super::{extensions, shown};
 use crate::scene::Options;
-use crate::scene::text::SceneFolders;
+use crate::scene::mesh_builder::Limits;
+use crate::scene::text::{Fault, SceneFolders};
 use base64::Engine;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
-use gltf::Document;
-use gltf::buffer::{Source, View};
-use std::borrow::Cow;
-use std::cell::LazyCell;
+use foldhash::fast::RandomState;
 use std::collections::HashMap;
+use std::ops::Range;
 use std::path::{Component, Path, PathBuf};
+use std::rc::Rc;
 
-/// All buffers of a file.
-pub struct Buffers<'a> {
-    /// Index into `contents` for each buffer of the document.
-    buffers: Vec<usize>,
-    /// The bytes of buffers; buffers with the same file share an entry.
-    contents: Vec<Cow<'a, [u8]>>,
-    /// Size of all external files in bytes.
-    external_bytes: usize,
+/// The bytes of a buffer.
+#[derive(Clone)]
+pub enum Content<'a> {
+    /// The binary chunk of a GLB.
+    Chunk(&'a [u8]),
+    /// A file, or a decoded URI.
+    Owned(Rc<Vec<u8>>),
 }
 
-impl<'a> Buffers<'a> {
-    /// Loads all buffers: from the GLB itself, from data URIs, and from files in the scene's folder (outside of it only
-    /// with the option `outside`).
-    pub fn load(path: &Path, document: &Document, blob: Option<&'a [u8]>, options: &Options) -> Result<Self, Problem> {
-        let mut all = Buffers { buffers: Vec::new(), contents: Vec::new(), external_bytes: 0 };
-        let mut files: HashMap<PathBuf, usize> = HashMap::new();
-        let folders = LazyCell::new(|| SceneFolders::of(path));
-        for buffer in document.buffers() {
-            let content = match buffer.source() {
-                Source::Bin => match blob {
-                    Some(blob) => all.add(blob.into()),
-                    None => return Err(("the file has no binary chunk, but needs one".into(), "export it again")),
-                },
-                Source::Uri(uri) => match uri.strip_prefix("data:") {
-                    Some(data) => all.add(decode(data)?.into()),
-                    None => {
-                        let (shown, file) = place(path, uri, options, &folders)?;
-                        match files.get(&file) {
-                            Some(&content) => content,
-                            None => {
-                                let content = all.add(read(&shown, &file)?.into());
-                                all.external_bytes += all.contents[content].len();
-                                files.insert(file, content);
-                                content
-                            }
-                        }
-                    }
-                },
-            };
-            let bytes = &all.contents[content];
-            if bytes.len() < buffer.length() {
-                let (index, has, wants) = (buffer.index(), bytes.len(), buffer.length());
-                let problem = format!("buffer {index} is truncated: it has {has} bytes of {wants}");
-                return Err((problem, "copy the whole file"));
-            }
-            all.buffers.push(content);
+impl Content<'_> {
+    pub fn bytes(&self) -> &[u8] {
+        match self {
+            Content::Chunk(bytes) => bytes,
+            Content::Owned(bytes) => bytes,
         }
-        Ok(all)
+    }
+}
+
+/// A buffer view: a range of the bytes of a buffer.
+#[derive(Clone)]
+pub struct Bytes<'a> {
+    content: Content<'a>,
+    range: Range<usize>,
+    /// Distance of elements in bytes, if it is not their size.
+    pub stride: Option<usize>,
+}
+
+impl Bytes<'_> {
+    pub fn bytes(&self) -> &[u8] {
+        &self.content.bytes()[self.range.clone()]
+    }
+}
+
+/// The buffers and buffer views of a file.
+pub struct Buffers<'a> {
+    path: &'a Path,
+    options: &'a Options,
+    blob: Option<&'a [u8]>,
+    views: List<'a>,
+    buffers: List<'a>,
+    known_views: HashMap<usize, Bytes<'a>, RandomState>,
+    contents: HashMap<usize, Content<'a>, RandomState>,
+    files: HashMap<PathBuf, Content<'a>>,
+    folders: Option<SceneFolders>,
+    /// Size of the file and of all buffers' files in bytes.
+    pub file_bytes: usize,
+}
+
+/// Memory of an entry of a table in bytes, while the table grows.
+const PER_ENTRY: usize = 3 * (size_of::<usize>() + size_of::<Bytes>());
+
+impl<'a> Buffers<'a> {
+    pub fn new(
+        (path, bytes): (&'a Path, &[u8]),
+        options: &'a Options,
+        blob: Option<&'a [u8]>,
+        views: List<'a>,
+        buffers: List<'a>,
+    ) -> Buffers<'a> {
+        Buffers {
+            path,
+            options,
+            blob,
+            views,
+            buffers,
+            known_views: HashMap::default(),
+            contents: HashMap::default(),
+            files: HashMap::new(),
+            folders: None,
+            file_bytes: bytes.len(),
+        }
     }
 
-    fn add(&mut self, content: Cow<'a, [u8]>) -> usize {
-        self.contents.push(content);
-        self.contents.len() - 1
+    /// The bytes of a buffer view, which `from` names. Loading a buffer raises the limits by the size of its file.
+    ///
+    /// # Errors
+    /// The view does not exist or reaches beyond its buffer, or the buffer cannot be loaded.
+    pub fn view(&mut self, index: usize, from: &str, limits: &mut Limits) -> Result<Bytes<'a>, Fault> {
+        if let Some(known) = self.known_views.get(&index) {
+            return Ok(known.clone());
+        }
+        let view: View = self.views.get(index, from)?;
+        let compressed = view.extensions.given().is_some_and(|e| e.is_meshopt());
+        let content = match self.content(view.buffer.0, &format!("bufferViews[{index}]"), limits) {
+            // The buffer of compressed views may have no bytes.
+            Err(fault) if compressed => {
+                let problem = format!("buffer view {index} is compressed (meshopt), which is not supported");
+                return Err(Fault::new(fault.line, problem, extensions::UNPACK));
+            }
+            content => content?,
+        };
+        let start = view.byte_offset.unwrap_or_default().0;
+        let end = start.checked_add(view.byte_length.0).filter(|&end| end <= content.bytes().len());
+        let Some(end) = end else {
+            let problem = format!("buffer view {index} reaches beyond its buffer");
+            return Err(Fault::new(None, problem, "export the file again"));
+        };
+        limits.keep(PER_ENTRY)?;
+        let stride = view.byte_stride.map(|Whole(stride)| stride).filter(|&stride| stride > 0);
+        let bytes = Bytes { content, range: start..end, stride };
+        self.known_views.insert(index, bytes.clone());
+        Ok(bytes)
     }
 
-    /// The bytes of a buffer view.
-    pub fn view(&self, view: &View) -> Result<&[u8], Problem> {
-        let bytes = &self.contents[self.buffers[view.buffer().index()]];
-        let end = view.offset().checked_add(view.length());
-        end.and_then(|end| bytes.get(view.offset()..end))
-            .ok_or_else(|| (format!("buffer view {} reaches beyond its buffer", view.index()), "export the file again"))
+    /// The bytes of a buffer: of the GLB itself, of a data URI, or of a file in the scene's folder (outside of it only
+    /// with the option `outside`).
+    fn content(&mut self, index: usize, from: &str, limits: &mut Limits) -> Result<Content<'a>, Fault> {
+        if let Some(known) = self.contents.get(&index) {
+            return Ok(known.clone());
+        }
+        let buffer: Buffer = self.buffers.get(index, from)?;
+        // Views of compressed data have a buffer for what they give, which has no bytes.
+        let has_bytes = !buffer.extensions.given().is_some_and(|e| e.is_meshopt());
+        let content = match (buffer.uri, self.blob) {
+            (None, Some(blob)) if has_bytes => Content::Chunk(blob),
+            (None, _) => {
+                let problem = format!("buffer {index} has neither a uri nor a binary chunk");
+                return Err(Fault::new(None, problem, "export the file again"));
+            }
+            (Some(Uri(uri)), _) => match uri.strip_prefix("data:") {
+                Some(data) => {
+                    limits.keep(2 * data.len())?;
+                    Content::Owned(Rc::new(decode(data)?))
+                }
+                None => self.file(&uri, limits)?,
+            },
+        };
+        let (has, wants) = (content.bytes().len(), buffer.byte_length.unwrap_or_default().0);
+        if has < wants {
+            let problem = format!("buffer {index} is truncated: it has {has} bytes of {wants}");
+            return Err(Fault::new(None, problem, "copy the whole file"));
+        }
+        limits.keep(PER_ENTRY)?;
+        self.contents.insert(index, content.clone());
+        Ok(content)
     }
 
-    /// Size of all buffers in bytes; each file is counted once.
-    pub fn total(&self) -> usize {
-        self.contents.iter().map(|bytes| bytes.len()).sum()
-    }
-
-    /// Size of all external files in bytes.
-    pub fn external_bytes(&self) -> usize {
-        self.external_bytes
+    /// The content of an external file, which is read once.
+    fn file(&mut self, uri: &str, limits: &mut Limits) -> Result<Content<'a>, Fault> {
+        let name = percent_encoding::percent_decode_str(uri).decode_utf8_lossy();
+        let label = shown(&name, 80);
+        if name.contains("://") {
+            let problem = format!("buffer {label} is a web address");
+            return Err(Fault::new(None, problem, "download it, and name the file in the scene"));
+        }
+        let folder = self.path.parent().unwrap_or(Path::new(""));
+        // Some exporters write the path as Windows does.
+        let windows = name.contains('\\') && !folder.join(&*name).exists();
+        let name = if windows { name.replace('\\', "/").into() } else { name };
+        let leaves = Path::new(&*name).components().any(|c| !matches!(c, Component::Normal(_) | Component::CurDir));
+        let file = folder.join(&*name);
+        let folders = self.folders.get_or_insert_with(|| SceneFolders::of(self.path));
+        if !self.options.outside && (leaves || !folders.contain(&file)) {
+            let problem = format!("buffer {label} lies outside of the scene's folder");
+            return Err(Fault::new(None, problem, "allow it with the option outside=yes"));
+        }
+        let file = file.canonicalize().unwrap_or(file);
+        if let Some(known) = self.files.get(&file) {
+            return Ok(known.clone());
+        }
+        let bytes = crate::scene::read_file(&file).map_err(|_| {
+            let problem = format!("buffer {label} cannot be read: {}", reason(&file));
+            Fault::new(None, problem, "put it into the folder of the scene's file")
+        })?;
+        limits.read(bytes.len());
+        self.file_bytes += bytes.len();
+        let content = Content::Owned(Rc::new(bytes));
+        self.files.insert(file, content.clone());
+        Ok(content)
     }
 }
 
 /// Decodes the part of a data URI after `data:`.
-fn decode(data: &str) -> Result<Vec<u8>, Problem> {
+fn decode(data: &str) -> Result<Vec<u8>, Fault> {
     const HINT: &str = "buffers in URIs must be base64";
     let Some((_, text)) = data.split_once(";base64,") else {
-        return Err(("a buffer's data URI is not base64".into(), HINT));
+        return Err(Fault::new(None, "a buffer's data URI is not base64", HINT));
     };
     // Many exporters omit the padding.
     let config = GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent);
-    GeneralPurpose::new(&base64::alphabet::STANDARD, config)
+    let engine = GeneralPurpose::new(&base64::alphabet::STANDARD, config);
+    let without_escapes = |_| {
+        let bytes = percent_encoding::percent_decode_str(text).filter(|b| !b.is_ascii_whitespace());
+        engine.decode(bytes.collect::<Vec<u8>>())
+    };
+    engine
         .decode(text)
-        .map_err(|e| (format!("a buffer's data URI is broken: {e}"), HINT))
-}
-
-/// Resolves the URI of an external file: its name for messages, and its path.
-fn place(path: &Path, uri: &str, options: &Options, folders: &SceneFolders) -> Result<(String, PathBuf), Problem> {
-    let name = percent_encoding::percent_decode_str(uri).decode_utf8_lossy();
-    let shown: String = name.chars().filter(|c| !c.is_control()).take(80).collect();
-    if name.contains("://") {
-        return Err((format!("buffer {shown} is a web address"), "download it, and name the file in the scene"));
-    }
-    let leaves = Path::new(&*name).components().any(|c| !matches!(c, Component::Normal(_) | Component::CurDir));
-    let file = path.parent().unwrap_or(Path::new("")).join(&*name);
-    if !options.outside && (leaves || !folders.contain(&file)) {
-        let problem = format!("buffer {shown} lies outside of the scene's folder");
-        return Err((problem, "allow it with the option outside=yes"));
-    }
-    let file = file.canonicalize().unwrap_or(file);
-    Ok((shown, file))
-}
-
-/// Reads an external file; `shown` is its name for messages.
-fn read(shown: &str, file: &Path) -> Result<Vec<u8>, Problem> {
-    let content = crate::scene::read_file(file);
-    content.map_err(|_| {
-        (format!("buffer {shown} cannot be read: {}", reason(file)), "put it into the folder of the scene's file")
-    })
+        .or_else(without_escapes)
+        .map_err(|e| Fault::new(None, format!("a buffer's data URI is broken: {e}"), HINT))
 }
 
 /// The reason why a file could not be read, without its path, which may contain line ends.

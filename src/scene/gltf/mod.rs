@@ -1,41 +1,52 @@
 //! Reader of glTF 2.0 and GLB: meshes, nodes and instances, materials, punctual lights, cameras.
 //!
-//! The crate `gltf` parses and validates the JSON. Accessors are read by [`accessor`], because the crate's iterators
-//! rely on unchecked lengths.
+//! The JSON is parsed in pieces, each when it is used ([`json`]), by types that know only what is read ([`schema`]). So
+//! no geometry is lost over what is not geometry: textures, animations, attributes of applications, `extras`. The crate
+//! `gltf` validates all of that, and refuses what exporters write.
 //!
-//! The reader converts the default scene (otherwise the first, otherwise all nodes), with each mesh once per node that
-//! refers to it, in the order of the nodes: triangles, strips and fans. A primitive without normals has flat shading,
-//! as the format demands. The camera is the one that the option `camera=` names, by default the first perspective
+//! The reader converts the default scene (otherwise the first with nodes, otherwise all nodes), with each mesh once per
+//! node that refers to it and once per instance (EXT_mesh_gpu_instancing), in the order of the nodes: triangles, strips
+//! and fans. Positions and normals may be bytes or shorts (KHR_mesh_quantization). Morph targets are applied with their
+//! default weights. A primitive without normals has flat shading, as the format demands. A triangle with a corner that
+//! is not finite is dropped. The camera is the one that the option `camera=` names, by default the first perspective
 //! camera. [`material`] converts materials. Punctual lights become point lights: a spot light shines in all directions,
 //! and a directional light is placed ten diagonals away. Lights have no attenuation in this program, so colours are
 //! scaled such that the brightest channel of their sum is 1. If there are no lights, emissive surfaces become lights
 //! ([`super::lamps`]).
 //!
-//! Textures, vertex colours, transparency, skins, morph targets, animations, points and lines are ignored.
+//! Textures, vertex colours, transparency, skins, animations, points and lines are ignored; [`extensions`] decides what
+//! an extension means. Malformed materials, lights and cameras are warnings.
 
 mod accessor;
 mod buffers;
-mod head;
-mod locals;
+mod container;
+mod extensions;
+mod json;
+mod lights;
 mod material;
 mod memory;
+mod nodes;
+mod notes;
 mod reader;
+mod schema;
+mod shape;
 
 use super::mesh_builder::Limits;
+use super::text::Fault;
 use super::{Options, Scene};
-use crate::error::{Error, Result};
+use crate::error::Result;
+use accessor::Accessors;
 use buffers::Buffers;
-use locals::Locals;
-use reader::GltfReader;
+use json::{Json, Loose};
+use notes::Notes;
+use reader::{GltfReader, Lists};
+use schema::{Root, Text};
 use std::path::Path;
-
-/// An error without the file's name: problem and hint.
-type Problem = (String, &'static str);
 
 /// Reads the file and the buffers that it names.
 ///
 /// # Errors
-/// [`Error::Input`] if one of them is not valid.
+/// [`crate::Error::Input`] if one of them is not valid.
 pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     read_bytes(path, &super::read_text(path)?, options)
 }
@@ -45,74 +56,64 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
 /// # Errors
 /// As [`read`].
 pub fn read_bytes(path: &Path, bytes: &[u8], options: &Options) -> Result<Scene> {
-    let at = |(problem, hint): Problem| Error::file(path, None, problem, hint);
-    head::check_container(bytes).map_err(at)?;
-    let json = if bytes.starts_with(b"glTF") { json_chunk(bytes) } else { bytes };
-    let mut limits = Limits::default();
+    scene(path, bytes, options).map_err(|fault| fault.of(path))
+}
+
+fn scene(path: &Path, bytes: &[u8], options: &Options) -> std::result::Result<Scene, Fault> {
+    let mut limits = Limits::new(options);
     limits.read(bytes.len());
-    document_fits(json, &mut limits).map_err(at)?;
-    head::check(json).map_err(at)?;
-    let locals = Locals::read(json);
-    limits.keep(locals.bytes()).map_err(|fault| at(memory::too_much(fault)))?;
-    let unchecked = gltf::Gltf::from_slice_without_validation(bytes).map_err(|error| refusal(path, error))?;
-    let json = unchecked.document.into_json();
-    positions_exist(&json).map_err(at)?;
-    let document = gltf::Document::from_json(json).map_err(|error| refusal(path, error))?;
-    let buffers = Buffers::load(path, &document, unchecked.blob.as_deref(), options).map_err(at)?;
-    limits.read(buffers.external_bytes());
-    let mut reader = GltfReader::new(&document, &buffers, limits, locals, options);
-    reader.scene().map_err(at)?;
-    reader.finish().map_err(at)
-}
-
-/// The content of the first chunk of a GLB.
-fn json_chunk(bytes: &[u8]) -> &[u8] {
-    let length = bytes.get(12..16).map_or(0, |b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize);
-    let behind = bytes.get(20..).unwrap_or_default();
-    &behind[..length.min(behind.len())]
-}
-
-/// Upper bound of the memory in bytes that the crate (1.4.1) needs per `{` of the JSON, while the vectors that hold the
-/// objects grow. Nodes are the largest objects that can be as short as `{}`.
-const PER_OBJECT: usize = 704;
-/// Upper bound of the memory in bytes per quotation mark; a string has two.
-const PER_MARK: usize = 36;
-
-/// Refuses a document that needs more memory than the file may take, before the crate allocates it.
-fn document_fits(json: &[u8], limits: &mut Limits) -> Result<(), Problem> {
-    let count = |byte| json.iter().filter(|&&b| b == byte).count();
-    let needed = count(b'{') * PER_OBJECT + count(b'"') * PER_MARK;
-    limits.keep(needed).map_err(|_| {
-        let problem = format!("the JSON's {} objects need {} MiB of memory", count(b'{'), needed >> 20);
-        (problem, "a file may take 16 times its size and 64 MiB: export fewer nodes")
-    })
-}
-
-/// Refuses primitives with positions in an accessor that does not exist: the crate's validation (1.4.1) panics on them.
-fn positions_exist(json: &gltf::json::Root) -> Result<(), Problem> {
-    let positions = gltf::json::validation::Checked::Valid(gltf::Semantic::Positions);
-    let mut primitives = json.meshes.iter().flat_map(|mesh| &mesh.primitives);
-    let beyond = |index: usize| index >= json.accessors.len();
-    match primitives.find_map(|p| p.attributes.get(&positions).map(|i| i.value()).filter(|&i| beyond(i))) {
-        Some(index) => {
-            Err((format!("a primitive uses accessor {index}, which does not exist"), "export the file again"))
+    let (json, blob) = container::split(bytes)?;
+    let text = container::characters(json)?;
+    let is_text = !bytes.starts_with(b"glTF");
+    let repaired;
+    let (json, root) = match Json::new(&text, is_text).root::<Root>() {
+        Ok(root) => (Json::new(&text, is_text), root),
+        Err(fault) => {
+            repaired = container::without_nan(&text).ok_or(fault)?;
+            let json = Json::new(&repaired, is_text);
+            (json, json.root()?)
         }
-        None => Ok(()),
-    }
+    };
+    let version = |which: for<'r> fn(&'r schema::Asset<'r>) -> &'r Loose<Text<'r>>| match &root.asset {
+        Loose::Given(asset) => match which(asset) {
+            Loose::Given(Text(version)) => Some(&**version),
+            Loose::Absent | Loose::Malformed => None,
+        },
+        Loose::Absent | Loose::Malformed => None,
+    };
+    container::check_version(version(|asset| &asset.version), version(|asset| &asset.min_version))?;
+    let warnings = extensions::check(json, &root)?;
+    let views = json.list("bufferViews", "buffer view", root.buffer_views)?;
+    let buffers = json.list("buffers", "buffer", root.buffers)?;
+    let buffers = Buffers::new((path, bytes), options, blob, views, buffers);
+    let accessors = Accessors::new(json.list("accessors", "accessor", root.accessors)?, buffers);
+    let lights = match &root.extensions {
+        Loose::Given(schema::RootExtensions { lights: Loose::Given(lights) }) => lights.lights,
+        _ => None,
+    };
+    let mut notes = Notes::default();
+    let mut optional = |name, element, raw| match json.list(name, element, raw) {
+        Ok(list) => Ok(list),
+        Err(fault) => {
+            notes.malformed(|| fault.problem);
+            json.list(name, element, None)
+        }
+    };
+    let lists = Lists {
+        nodes: json.list("nodes", "node", root.nodes)?,
+        meshes: json.list("meshes", "mesh", root.meshes)?,
+        cameras: optional("cameras", "camera", root.cameras)?,
+        lights: optional("lights", "light", lights)?,
+    };
+    let mut reader = GltfReader::new((json, &root), lists, accessors, limits, options);
+    reader.notes = notes;
+    reader.scene.warnings = warnings;
+    reader.materials()?;
+    reader.scene()?;
+    reader.finish()
 }
 
-/// Converts an error of the crate to one line.
-fn refusal(path: &Path, error: gltf::Error) -> Error {
-    const EXPORT: &str = "export it again";
-    match error {
-        gltf::Error::Deserialize(e) => {
-            let line = path.extension().is_some_and(|x| x.eq_ignore_ascii_case("gltf")).then(|| e.line());
-            Error::file(path, line, format!("the JSON is not glTF: {e}"), EXPORT)
-        }
-        gltf::Error::Validation(faults) => {
-            let first = faults.first().map(|(place, fault)| format!("{place}: {fault}")).unwrap_or_default();
-            Error::file(path, None, format!("{} faults, the first: {first}", faults.len()), EXPORT)
-        }
-        other => Error::file(path, None, format!("this is not glTF: {other}").replace('\n', " "), EXPORT),
-    }
+/// A piece of the file for a message: without control characters, at most this many characters.
+fn shown(text: &str, most: usize) -> String {
+    text.chars().filter(|c| !c.is_control()).take(most).collect()
 }

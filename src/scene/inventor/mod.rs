@@ -53,9 +53,14 @@ use tree::Tree;
 /// The default number of segments around a curved surface.
 pub const SEGMENTS: u32 = 24;
 
-/// The limit of values that are processed, counting repetitions, is `WORK` plus `WORK_PER_BYTE` per byte of the files.
+/// The limit of values that are processed, counting repetitions, is `WORK` for each 64 MiB that repetitions may take
+/// ([`MeshBuilder::work_factor`]), plus `WORK_PER_BYTE` per byte of the files.
 const WORK: usize = 4_000_000;
 const WORK_PER_BYTE: usize = 16;
+
+/// What to do about too many repetitions.
+const REPEATED: &str =
+    "allow more with the option memory=SIZE, as in FILE:memory=8G, or reduce the repetitions of nodes";
 
 /// Number of faces around a corner that can be examined in the time of one value.
 const FACES_PER_VALUE: usize = 8;
@@ -82,7 +87,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     let (includes, bytes) = Includes::new(path, options.outside)?;
     let mut reader = InventorReader {
         includes,
-        mesh: MeshBuilder::new(options.offset),
+        mesh: MeshBuilder::new(options),
         segments: options.segments.unwrap_or(SEGMENTS),
         trees: HashMap::new(),
         camera: None,
@@ -136,7 +141,7 @@ impl InventorReader {
     /// The limit is exceeded.
     fn count_work(&mut self, values: usize) -> Result<(), Fault> {
         if self.work_is_too_much(values) {
-            return Err(Fault::new(None, "nested copies repeat too many values", "reduce the repetitions of nodes"));
+            return Err(Fault::new(None, "nested copies repeat too many values", REPEATED));
         }
         Ok(())
     }
@@ -158,6 +163,6 @@ impl InventorReader {
 
     fn work_is_too_much(&mut self, more: usize) -> bool {
         self.work = self.work.saturating_add(more);
-        self.work > WORK + WORK_PER_BYTE * self.includes.bytes()
+        self.work > WORK * self.mesh.work_factor() + WORK_PER_BYTE * self.includes.bytes()
     }
 }

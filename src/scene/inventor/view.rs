@@ -24,7 +24,7 @@ impl InventorReader {
         let colour = node.vector("color", DVec3::ONE)? * node.number("intensity", 1.0)?;
         if node.kind == NodeType::DirectionalLight {
             let direction = state.transform.transform_vector3(node.vector("direction", DVec3::NEG_Z)?);
-            self.mesh.charge(size_of::<DistantLight>() + size_of::<Light>())?;
+            self.mesh.charge_repeated(size_of::<DistantLight>() + size_of::<Light>())?;
             self.distant_lights.push((direction, colour));
             return Ok(());
         }

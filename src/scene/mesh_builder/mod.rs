@@ -15,7 +15,7 @@ mod warnings;
 use super::placement::MAX_COORDINATE;
 use super::polygon::Triangulator;
 use super::text::Fault;
-use super::{Light, Material, Placement, Scene, Triangle};
+use super::{Light, Material, Options, Placement, Scene, Triangle};
 use crate::math::Vertex;
 use foldhash::fast::RandomState;
 use glam::{DAffine3, DMat3, DVec3, Vec3};
@@ -132,10 +132,12 @@ impl Default for MeshBuilder {
 }
 
 impl MeshBuilder {
-    /// A builder of a mesh that has this point of the file as its origin in memory.
-    pub fn new(offset: Option<DVec3>) -> MeshBuilder {
-        let frame = Frame::new(DAffine3::IDENTITY, offset.unwrap_or(DVec3::ZERO));
-        MeshBuilder { stack: vec![frame], ..MeshBuilder::default() }
+    /// A builder of a mesh; `options` give the point of the file that is the origin in memory, and the memory that
+    /// repetitions may take. All geometry counts as possibly repeated: the files' bytes are parsed for every triangle
+    /// that is not.
+    pub fn new(options: &Options) -> MeshBuilder {
+        let frame = Frame::new(DAffine3::IDENTITY, options.offset.unwrap_or(DVec3::ZERO));
+        MeshBuilder { stack: vec![frame], limits: Limits::new(options), ..MeshBuilder::default() }
     }
 
     /// The point of the file that is the origin in memory.
@@ -149,12 +151,25 @@ impl MeshBuilder {
         self.triangulator.read(bytes);
     }
 
-    /// Charges memory that a reader needs in addition to the mesh.
+    /// Charges memory that a reader needs in addition to the mesh for what a file declares.
     ///
     /// # Errors
     /// The limit is exceeded.
     pub fn charge(&mut self, bytes: usize) -> Result<(), Fault> {
         self.limits.grow(bytes)
+    }
+
+    /// Charges memory that a reader needs in addition to the mesh for every repetition.
+    ///
+    /// # Errors
+    /// The limit is exceeded.
+    pub fn charge_repeated(&mut self, bytes: usize) -> Result<(), Fault> {
+        self.limits.repeat(2 * bytes)
+    }
+
+    /// The factor by which limits on the time of repetitions grow with their memory, at least 1.
+    pub fn work_factor(&self) -> usize {
+        self.limits.work_factor()
     }
 
     /// Releases memory that was charged.
@@ -235,7 +250,7 @@ impl MeshBuilder {
         if !position.is_finite() || !colour.is_finite() {
             return Err(Fault::new(None, format!("a light at {position} of colour {colour} is not finite"), FINITE));
         }
-        self.limits.grow(size_of::<Light>())?;
+        self.limits.repeat(2 * size_of::<Light>())?;
         self.lights.push(Light::new(position, colour));
         Ok(())
     }
@@ -250,7 +265,7 @@ impl MeshBuilder {
     pub fn reserve(&mut self, vertices: usize, triangles: usize) {
         let bytes = vertices.saturating_mul(size_of::<Vertex>());
         let bytes = bytes.saturating_add(triangles.saturating_mul(size_of::<Triangle>()));
-        if self.limits.check_temporary(bytes).is_ok() && triangles >= self.triangles.len() {
+        if self.limits.have_room(bytes) && triangles >= self.triangles.len() {
             self.triangles.reserve_exact(triangles);
             self.vertices.reserve_exact(vertices);
         }
@@ -319,7 +334,7 @@ impl MeshBuilder {
     /// There are too many triangles.
     pub fn triangle(&mut self, [a, b, c]: [u32; 3]) -> Result<(), Fault> {
         self.limits.elements(self.triangles.len())?;
-        self.limits.grow(size_of::<Triangle>())?;
+        self.limits.repeat(2 * size_of::<Triangle>())?;
         let vertices = if self.frame().mirrored { [a, c, b] } else { [a, b, c] };
         let material = self.material_index()?;
         self.triangles.push(Triangle { vertices, material });
@@ -336,7 +351,7 @@ impl MeshBuilder {
         let index = *self.known.entry(words).or_insert(next);
         if index == next {
             // A material is stored in the list and in the map.
-            self.limits.grow(2 * size_of::<Material>())?;
+            self.limits.repeat(4 * size_of::<Material>())?;
             self.materials.push(self.current);
         }
         self.current_index = Some(index);
@@ -361,8 +376,8 @@ const FINITE: &str = "move the scene closer to its origin, or repair its transfo
 fn store(vertices: &mut Vec<Vertex>, vertex: Vertex, limits: &mut Limits, held: usize) -> Result<u32, Fault> {
     let index = vertices.len();
     limits.elements(index)?;
-    limits.grow(size_of::<Vertex>())?;
-    limits.check_temporary(held)?;
+    limits.repeat(2 * size_of::<Vertex>())?;
+    limits.check_room(held)?;
     vertices.push(vertex);
     Ok(index as u32)
 }

@@ -151,7 +151,7 @@ impl MeshBuilder {
 
     /// Adds a surface with distinct vertices ([`Surface::is_distinct`]) within the limits ([`MeshBuilder::has_room`]).
     fn add_distinct(&mut self, surface: &Surface, vertices: usize, triangles: usize) -> Result<(), Fault> {
-        self.limits.grow(vertices * size_of::<Vertex>() + triangles * size_of::<Triangle>())?;
+        self.limits.repeat(2 * (vertices * size_of::<Vertex>() + triangles * size_of::<Triangle>()))?;
         self.vertices.reserve(vertices);
         self.triangles.reserve(triangles);
         let begin = self.vertices.len();

@@ -40,9 +40,13 @@ pub const SEGMENTS: u32 = 20;
 /// The largest nesting depth of blocks and files.
 const MAX_DEPTH: usize = 100;
 
-/// The limit of tokens that are read, counting repetitions, is `TOKENS` plus `TOKENS_PER_BYTE` per byte of the files.
+/// The limit of tokens that are read, counting repetitions, is `TOKENS` for each 64 MiB that repetitions may take
+/// ([`MeshBuilder::work_factor`]), plus `TOKENS_PER_BYTE` per byte of the files.
 const TOKENS: usize = 2_000_000;
 const TOKENS_PER_BYTE: usize = 16;
+
+/// What to do about too many repetitions.
+const REPEATED: &str = "allow more with the option memory=SIZE, as in FILE:memory=8G, or reduce copies and includes";
 
 /// A comment is an entity in this format, since names may contain `#`.
 static SYNTAX: Syntax = Syntax::new(b"", b"").with_continued_lines();
@@ -83,7 +87,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     let (includes, bytes) = Includes::new(path, options.outside)?;
     let mut reader = MgfReader {
         includes,
-        mesh: MeshBuilder::new(options.offset),
+        mesh: MeshBuilder::new(options),
         segments: options.segments.unwrap_or(SEGMENTS),
         vertices: Contexts::default(),
         colours: Contexts::default(),
@@ -131,8 +135,8 @@ impl MgfReader {
     /// The limit is exceeded.
     fn count_work(&mut self, tokens: usize) -> Result<(), Fault> {
         self.passed += tokens;
-        if self.passed > TOKENS + TOKENS_PER_BYTE * self.includes.bytes() {
-            return Err(Fault::new(None, "nested arrays repeat too many entities", "reduce repetitions or includes"));
+        if self.passed > TOKENS * self.mesh.work_factor() + TOKENS_PER_BYTE * self.includes.bytes() {
+            return Err(Fault::new(None, "nested arrays repeat too many entities", REPEATED));
         }
         Ok(())
     }

@@ -187,8 +187,9 @@ fn is_as_catalogued(name: &str, scene: ThesisScene) -> Result<(), String> {
     let (bare, settings) = name.split_once(':').unwrap_or((name, ""));
     let catalogued = catalogue::find(scene.name()).map_or("", |entry| entry.options.as_str());
     let all = if bare == scene.name() { format!("{catalogued},{settings}") } else { settings.to_owned() };
-    // The folders that includes may be read from change nothing in the scene
-    let read = |settings: &str| Options::parse(name, settings).map(|o| Options { outside: false, ..o }).ok();
+    // The folders that includes may be read from and the allowed memory change nothing in the scene
+    let read =
+        |settings: &str| Options::parse(name, settings).map(|o| Options { outside: false, memory: None, ..o }).ok();
     match (read(&all), read(catalogued)) {
         (Some(this), Some(thesis)) if this == thesis => Ok(()),
         _ if settings.is_empty() => Err(format!(" without {catalogued}")),

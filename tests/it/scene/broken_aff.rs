@@ -106,6 +106,6 @@ fn nested_copies_are_limited() {
     let files: Vec<(&str, &str)> = files.iter().map(|(name, text)| (name.as_str(), text.as_str())).collect();
     let files = Files::new(&files);
     assert_eq!(files.load("copies1.aff").unwrap().triangles.len(), 100 * 24 * 11 * 2);
-    let message = refusal(files.load("copies5.aff"));
+    let message = refusal(files.load("copies5.aff:memory=64M"));
     assert!(message.contains("more than 64 MiB of memory") || message.contains("too often"), "{message}");
 }

@@ -67,7 +67,7 @@ fn each_error_has_its_line() {
             .replace("POINTS", POINTS.trim_end())
             .replace("NESTED", &"Separator {".repeat(100_000));
         let files = Files::new(&[("main.iv", &format!("{HEADER}{whole}"))]);
-        let message = refusal(files.load("main.iv"));
+        let message = refusal(files.load("main.iv:memory=64M"));
         assert!(message.contains(words), "{text:?}: {message}");
     }
 }

@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use std::path::Path;
 
 /// The buffer of a triangle in the plane z = 0: 3 positions, 3 normals, 3 indices of two bytes, 2 bytes of padding.
-fn bytes() -> Vec<u8> {
+pub(super) fn bytes() -> Vec<u8> {
     let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0f32]];
     let floats: Vec<f32> = corners.into_iter().chain([[0.0, 0.0, 1.0]; 3]).flatten().collect();
     let mut bytes: Vec<u8> = floats.iter().flat_map(|f| f.to_le_bytes()).collect();
@@ -19,7 +19,7 @@ fn bytes() -> Vec<u8> {
 }
 
 /// The document for this buffer.
-fn document() -> Value {
+pub(super) fn document() -> Value {
     json!({
         "asset": { "version": "2.0" },
         "buffers": [{ "byteLength": 80 }],
@@ -51,19 +51,19 @@ pub(super) fn glb(document: &Value, bytes: &[u8]) -> Vec<u8> {
 }
 
 /// Loads a GLB of a document and the buffer of [`bytes`].
-fn try_load(document: &Value) -> Result<Scene> {
+pub(super) fn try_load(document: &Value) -> Result<Scene> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.glb");
     std::fs::write(&path, glb(document, &bytes())).unwrap();
     scene::load(path.to_str().unwrap())
 }
 
-fn load(document: &Value) -> Scene {
+pub(super) fn load(document: &Value) -> Scene {
     try_load(document).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// The document with changed values at these JSON pointers.
-fn with(changes: &[(&str, Value)]) -> Value {
+pub(super) fn with(changes: &[(&str, Value)]) -> Value {
     let mut document = document();
     for (place, value) in changes {
         let (parent, key) = place.rsplit_once('/').unwrap();
@@ -77,7 +77,7 @@ fn with(changes: &[(&str, Value)]) -> Value {
     document
 }
 
-fn positions(scene: &Scene) -> Vec<[f32; 3]> {
+pub(super) fn positions(scene: &Scene) -> Vec<[f32; 3]> {
     scene.vertices.iter().map(|v| v.position.to_array()).collect()
 }
 
@@ -128,7 +128,7 @@ fn all_kinds_of_files_and_buffers_are_read() {
     scene::load(&format!("{}:outside=yes", inner.display())).unwrap();
     let message = refusal(load("\u{1}", ""));
     assert!(message.contains("cannot be read"), "{message}");
-    std::fs::write(&path, "{\n  \"asset\": { \"version\": 2 }\n}").unwrap();
+    std::fs::write(&path, "{\n  \"asset\": { \"version\": }\n}").unwrap();
     assert!(refusal(scene::load(path.to_str().unwrap())).contains("a.gltf:2: the JSON is not glTF"));
 }
 
@@ -313,10 +313,13 @@ fn invalid_files_are_refused() {
         (("/accessors/2/type", json!("VEC3")), "accessor 2 must have one index"),
         (("/accessors/2/byteOffset", json!(2)), "accessor 2 reaches beyond"),
         (("/bufferViews/2/byteOffset", json!(68)), "a primitive uses vertex"),
-        (("/meshes/0/primitives/0/attributes", json!({})), ""),
-        (("/meshes/0/primitives/0/indices", json!(7)), "faults, the first"),
+        (("/meshes/0/primitives/0/attributes", json!({})), "no triangles: 1 primitives without POSITION ignored"),
+        (
+            ("/meshes/0/primitives/0/indices", json!(7)),
+            "meshes[0].primitives[0].indices names accessor 7, which does not exist",
+        ),
         (("/accessors", json!([])), "accessor 0, which does not exist"),
-        (("/nodes/0/mesh", json!(1)), "faults, the first"),
+        (("/nodes/0/mesh", json!(1)), "nodes[0].mesh names mesh 1, which does not exist"),
         (("/nodes/0/scale", json!([1e38, 1e38, 1e38])), ""),
         (
             ("/extensionsRequired", json!(["KHR_lights_punctual", "X_y"])),

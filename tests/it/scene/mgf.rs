@@ -167,7 +167,7 @@ fn each_error_has_its_line() {
         ),
     ] {
         let files = Files::new(&[("main.mgf", &format!("{POINTS}{text}")), ("../outside.mgf", "f a b c")]);
-        let message = refusal(files.load("main.mgf"));
+        let message = refusal(files.load("main.mgf:memory=64M"));
         for word in words {
             assert!(message.contains(word), "{text:?}: {message}");
         }

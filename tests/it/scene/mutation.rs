@@ -1,6 +1,6 @@
 //! Tests of the readers with thousands of mutated variants of every fixture, which are deterministic. Each variant is
 //! read or refused with one line; none panics, none hangs, and none takes more memory than sixteen times its file and
-//! 64 MiB.
+//! 64 MiB: what a file may repeat is limited by the option `memory=64M`. RTBENCH_VARIANTS sets another number of variants.
 
 mod bombs;
 mod guard;
@@ -62,8 +62,19 @@ struct Case<'a> {
 
 impl<'a> Case<'a> {
     fn new(name: &'a str, original: &'a [u8], mutate: fn(&[u8], &mut Random) -> Vec<u8>) -> Case<'a> {
-        Case { name, original, load: name, other_files: &[], mutate, variants: VARIANTS }
+        Case { name, original, load: name, other_files: &[], mutate, variants: variants(VARIANTS) }
     }
+}
+
+/// The number of variants: RTBENCH_VARIANTS if it is set, otherwise this default.
+fn variants(default: u64) -> u64 {
+    std::env::var("RTBENCH_VARIANTS").map_or(default, |number| number.parse().expect("RTBENCH_VARIANTS is a number"))
+}
+
+/// A file with the option that sets what it may repeat to the memory that a file may always take. A cache repeats
+/// nothing.
+fn limited(name: &str) -> String {
+    if name.ends_with(".rtb") { name.to_owned() } else { format!("{name}:memory=64M") }
 }
 
 /// The only variant to be tested, given as `NAME:NUMBER` in RTBENCH_VARIANT.
@@ -105,7 +116,8 @@ fn load_variants(case: &Case) -> u64 {
         files.write(case.name, &bytes);
         watchdog.begin(&case_name);
         let result = guard::within_limits(&case_name, other_bytes + bytes.len(), || {
-            catch_unwind(AssertUnwindSafe(|| files.load(case.load))).unwrap_or_else(|_| panic!("{case_name}: panics"))
+            catch_unwind(AssertUnwindSafe(|| files.load(&limited(case.load))))
+                .unwrap_or_else(|_| panic!("{case_name}: panics"))
         });
         match result {
             Ok(scene) => {
@@ -138,7 +150,7 @@ fn own_files_survive_every_mutation() {
     for (name, text) in OWN {
         let whole = Files::new(&[(name, text)]).load(name);
         assert!(whole.is_ok(), "{name}: {}", whole.unwrap_err());
-        load_own_variants(&Case { variants: OWN_VARIANTS, ..Case::new(name, text.as_bytes(), mutate::text) });
+        load_own_variants(&Case { variants: variants(OWN_VARIANTS), ..Case::new(name, text.as_bytes(), mutate::text) });
     }
 }
 
@@ -159,7 +171,7 @@ fn fixtures_survive_every_mutation() {
             .iter()
             .map(|(name, bytes)| load_variants(&Case { other_files: &files, ..Case::new(name, bytes, mutate::text) }))
             .sum();
-        eprintln!("{format}: {read} of {} variants read, the others refused", VARIANTS * files.len() as u64);
+        eprintln!("{format}: {read} of {} variants read, the others refused", variants(VARIANTS) * files.len() as u64);
     }
 }
 
@@ -171,26 +183,38 @@ fn meshes_with_a_material_library_survive_every_mutation() {
     assert!(whole.materials.len() >= 3 && !whole.lights.is_empty(), "{:?}", whole.warnings);
     for (name, bytes) in &files {
         let case = Case::new(name, bytes, mutate::text);
-        load_own_variants(&Case { load: "all.obj", other_files: &files, variants: OWN_VARIANTS, ..case });
+        load_own_variants(&Case { load: "all.obj", other_files: &files, variants: variants(OWN_VARIANTS), ..case });
     }
 }
 
-#[test]
-fn gltf_of_both_kinds_survives_every_mutation() {
-    let text = include_str!("../../data/all.gltf");
+/// Tests the variants of a glTF file with a single buffer that is used, and of the same file as a GLB.
+fn load_both_kinds(name: &str, text: &str) -> rtbench::scene::Scene {
     let mut document: serde_json::Value = serde_json::from_str(text).unwrap();
     let uri = document["buffers"][0].as_object_mut().unwrap().remove("uri").unwrap();
     let (_, data) = uri.as_str().unwrap().split_once(',').unwrap();
     let buffer = base64::engine::general_purpose::STANDARD.decode(data).unwrap();
     let binary = gltf::glb(&document, &buffer);
-    let files = Files::new(&[("all.gltf", text)]);
-    files.write("all.glb", &binary);
-    let [a, b] = ["all.gltf", "all.glb"].map(|name| files.load(name).unwrap());
-    assert!(
-        a.content_hash() == b.content_hash() && a.triangles.len() >= 8 && a.camera.is_some() && a.lights.len() == 3
-    );
-    load_own_variants(&Case { variants: OWN_VARIANTS, ..Case::new("all.gltf", text.as_bytes(), mutate::text) });
-    load_own_variants(&Case { variants: OWN_VARIANTS, ..Case::new("all.glb", &binary, mutate::bytes) });
+    let [text_name, binary_name] = ["gltf", "glb"].map(|extension| format!("{name}.{extension}"));
+    let files = Files::new(&[(&text_name, text)]);
+    files.write(&binary_name, &binary);
+    let [a, b] = [&text_name, &binary_name].map(|name| files.load(name).unwrap());
+    assert_eq!(a.content_hash(), b.content_hash());
+    let many = variants(OWN_VARIANTS);
+    load_own_variants(&Case { variants: many, ..Case::new(&text_name, text.as_bytes(), mutate::text) });
+    load_own_variants(&Case { variants: many, ..Case::new(&binary_name, &binary, mutate::bytes) });
+    a
+}
+
+#[test]
+fn gltf_of_both_kinds_survives_every_mutation() {
+    let all = load_both_kinds("all", include_str!("../../data/all.gltf"));
+    assert!(all.triangles.len() >= 8 && all.camera.is_some() && all.lights.len() == 3);
+}
+
+#[test]
+fn gltf_with_extensions_survives_every_mutation() {
+    let all = load_both_kinds("extensions", include_str!("../../data/extensions.gltf"));
+    assert!(all.triangles.len() == 3 * 2 + 2 + 2 && all.lights.len() == 1, "{:?}", all.warnings);
 }
 
 #[test]
@@ -208,5 +232,5 @@ fn caches_survive_every_mutation() {
         cache::reseal(&mut bytes);
         bytes
     };
-    load_own_variants(&Case { variants: OWN_VARIANTS, ..Case::new("resealed.rtb", &bytes, resealed) });
+    load_own_variants(&Case { variants: variants(OWN_VARIANTS), ..Case::new("resealed.rtb", &bytes, resealed) });
 }

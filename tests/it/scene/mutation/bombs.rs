@@ -15,7 +15,7 @@ fn load(name: &str, bytes: &[u8], words: &str) {
     let watchdog = Watchdog::new();
     let case_name = format!("{name}: {words}");
     watchdog.begin(&case_name);
-    match guard::within_limits(&case_name, bytes.len(), || files.load(name)) {
+    match guard::within_limits(&case_name, bytes.len(), || files.load(&format!("{name}:memory=64M"))) {
         Ok(_) => assert!(words.is_empty(), "{case_name}: read, but should be refused"),
         Err(error) => {
             let error = error.to_string();
@@ -139,10 +139,58 @@ fn gltf() {
     let mut copies = document.clone();
     copies["nodes"] = vec![json!({ "mesh": 0 }); 2000].into();
     load("main.glb", &glb(&copies, &bytes), "MiB of memory");
-    // Objects of three bytes, each of which takes hundreds of bytes in memory
-    let mut empty = document.clone();
-    empty["nodes"] = vec![json!({}); 400_000].into();
-    load("main.gltf", empty.to_string().as_bytes(), "objects need");
+    // Elements of three bytes, of which objects in memory could take hundreds
+    let empty = |list: &str, element: Value, count: usize| {
+        let mut empty = document.clone();
+        empty[list] = vec![element; count].into();
+        glb(&empty, &bytes)
+    };
+    load("main.glb", &empty("nodes", json!({}), 2_000_000), "has no triangles");
+    load("main.glb", &empty("nodes", json!(0), 3_000_000), "nodes[0]: invalid type: integer");
+    load("main.glb", &empty("accessors", json!(0), 3_000_000), "accessors[0]: invalid type: integer");
+    load("main.glb", &empty("meshes", json!({}), 2_000_000), "has no triangles");
+    load("main.glb", &empty("materials", json!({}), 1_500_000), "");
+    load("main.glb", &empty("materials", json!(0), 600_000), "");
+    load("main.glb", &empty("cameras", json!(0), 3_000_000), "");
+    load("main.glb", &empty("extensionsUsed", json!(""), 2_000_000), "");
+    load("main.glb", &empty("extensionsRequired", json!("KHR_xmp"), 1_000_000), "");
+    load("main.glb", &empty("scenes", json!({}), 2_000_000), "");
+    let mut nothing = document.clone();
+    nothing["meshes"][0]["primitives"] = vec![json!({}); 2_000_000].into();
+    load("main.glb", &glb(&nothing, &bytes), "MiB of memory");
+    // A chain of nodes, each the child of the one before
+    let mut chain = document.clone();
+    chain["nodes"] = (1..=300_000).map(|i| json!({ "children": [i] })).chain([json!({ "mesh": 0 })]).collect();
+    chain["scenes"] = json!([{ "nodes": [0] }]);
+    load("main.glb", &glb(&chain, &bytes), "");
+    // Long lists that many nodes share
+    let mut cameras = document.clone();
+    cameras["cameras"] = json!([{ "extras": vec![0; 500_000] }]);
+    cameras["nodes"] = [json!({ "mesh": 0 })].into_iter().chain(vec![json!({ "camera": 0 }); 100_000]).collect();
+    load("main.glb", &glb(&cameras, &bytes), "");
+    let mut lights = cameras.clone();
+    lights["extensions"] = json!({ "KHR_lights_punctual": { "lights": [{ "extras": vec![0; 500_000] }] } });
+    let lit = json!({ "extensions": { "KHR_lights_punctual": { "light": 0 } } });
+    lights["nodes"] = [json!({ "mesh": 0 })].into_iter().chain(vec![lit; 100_000]).collect();
+    load("main.glb", &glb(&lights, &bytes), "");
+    let mut morph = document.clone();
+    morph["accessors"][0] = json!({ "componentType": 5126, "count": 3, "type": "VEC3", "bufferView": 0 });
+    morph["meshes"][0]["primitives"][0]["targets"] = vec![json!({ "POSITION": 0 }); 20_000].into();
+    morph["meshes"][0]["weights"] = vec![1; 20_000].into();
+    morph["nodes"] = vec![json!({ "mesh": 0 }); 100_000].into();
+    load("main.glb", &glb(&morph, &bytes), "MiB of memory");
+    // Long accessors of which nothing is used
+    let mut unused = document.clone();
+    unused["accessors"][1] = json!({ "componentType": 5123, "count": 3, "type": "SCALAR" });
+    unused["meshes"][0]["primitives"][0]["indices"] = json!(1);
+    unused["nodes"] = vec![json!({ "mesh": 0 }); 100_000].into();
+    load("main.glb", &glb(&unused, &bytes), "MiB of memory");
+    // Instances without bytes
+    let mut instances = document.clone();
+    instances["accessors"][1] = json!({ "componentType": 5126, "count": 65536, "type": "VEC3" });
+    let attributes = json!({ "attributes": { "TRANSLATION": 1 } });
+    instances["nodes"][0]["extensions"] = json!({ "EXT_mesh_gpu_instancing": attributes });
+    load("main.glb", &glb(&instances, &bytes), "memory=SIZE");
     // Many buffers that name the file itself
     let mut again = document.clone();
     let data = base64::engine::general_purpose::STANDARD.encode(&bytes);
