@@ -41,7 +41,7 @@ mod tree;
 mod view;
 
 use super::mesh_builder::MeshBuilder;
-use super::text::{Fault, Includes, ReadError};
+use super::text::{Fault, Includes, ReadError, refuse_zeros};
 use super::{Options, Scene, SceneCamera};
 use crate::error::{Error, Result};
 use state::State;
@@ -127,6 +127,7 @@ impl InventorReader {
 
     fn tree(&mut self, bytes: &[u8]) -> Result<(Tree, f64), Fault> {
         let dialect = header::dialect(bytes)?;
+        refuse_zeros(bytes)?;
         Ok((parse::parse(bytes, &mut self.mesh)?, dialect.crease_angle))
     }
 
