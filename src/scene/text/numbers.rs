@@ -3,6 +3,14 @@
 use super::tokenizer::Tokenizer;
 use super::{Fault, number, odd, quote_bytes};
 
+/// The value of a whole word, see [`odd::value`].
+fn value_of(word: &[u8]) -> Option<f64> {
+    match number::double(word) {
+        Some((value, length)) if length == word.len() => Some(value),
+        _ => odd::value(word),
+    }
+}
+
 impl Tokenizer<'_> {
     /// Reads the next token as a finite number: `1`, `1.`, `.5`, `+1`, `-3e-2`, `1.e5`.
     ///
@@ -20,7 +28,7 @@ impl Tokenizer<'_> {
     /// punctuation. Everything else is an error.
     fn other_number(&mut self, context: &str) -> Result<f64, Fault> {
         let word = self.need(context)?;
-        match odd::value(word) {
+        match value_of(word) {
             Some(value) if value.is_finite() => Ok(value),
             _ => Err(self.no_number(word, context)),
         }
@@ -36,7 +44,7 @@ impl Tokenizer<'_> {
             Some(value) => Ok(value),
             None => {
                 let word = self.need(context)?;
-                odd::value(word).ok_or_else(|| self.no_number(word, context))
+                value_of(word).ok_or_else(|| self.no_number(word, context))
             }
         }
     }
