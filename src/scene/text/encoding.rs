@@ -42,7 +42,7 @@ pub fn refuse_zeros(bytes: &[u8]) -> Result<(), Fault> {
 }
 
 /// The error that a line has a zero byte inside a word.
-pub fn zero_in(line: usize) -> Fault {
+fn zero_in(line: usize) -> Fault {
     let hint = "if the text is UTF-16, save it as UTF-8; a binary file has another format";
     Fault::new(Some(line), "there is a zero byte inside a word", hint)
 }

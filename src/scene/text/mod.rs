@@ -9,7 +9,7 @@ pub mod odd;
 mod tokenizer;
 
 use crate::error::Error;
-pub use encoding::{refuse_zeros, to_utf8, zero_in};
+pub use encoding::{refuse_zeros, to_utf8};
 pub use folders::SceneFolders;
 pub use includes::Includes;
 use std::path::Path;
