@@ -72,6 +72,8 @@ struct InventorReader {
     depth: usize,
     /// Number of values processed so far.
     work: usize,
+    /// Errors of the current node that are warnings.
+    faults: Vec<Fault>,
 }
 
 /// Reads the file and the files that it includes.
@@ -89,6 +91,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
         distant_lights: Vec::new(),
         depth: 0,
         work: 0,
+        faults: Vec::new(),
     };
     reader.mesh.read(bytes.len());
     reader.file(path, bytes, None)?;

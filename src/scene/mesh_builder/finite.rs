@@ -56,12 +56,6 @@ impl NotFinite {
         self.faces += 1;
     }
 
-    /// True if there is a vertex that is not finite.
-    #[inline]
-    pub fn has_vertices(&self) -> bool {
-        self.vertices > 0
-    }
-
     /// Sets the place of the first dropped face, if it is not known yet.
     #[inline]
     pub fn set_place(&mut self, place: impl FnOnce() -> String) {

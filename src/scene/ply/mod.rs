@@ -72,7 +72,8 @@ fn parse(bytes: &[u8], offset: Option<DVec3>) -> Result<Body, Fault> {
         Encoding::BigEndian => body::read(&header, vertex, &faces, Binary::<true>::new(body), body.len(), offset),
     }?;
     warnings.append(&mut body.warnings);
-    Ok(Body { warnings, ..body })
+    body.warnings = warnings;
+    Ok(body)
 }
 
 fn vertex_element(header: &Header) -> Result<&Element, Fault> {

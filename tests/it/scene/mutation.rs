@@ -24,8 +24,14 @@ const LARGEST: usize = 20_000;
 
 /// Number of variants of each fixture.
 const VARIANTS: u64 = 300;
-/// Number of variants of each file in [`OWN`].
+
+/// Number of variants of each file in [`OWN`], unless RTBENCH_VARIANTS sets another.
 const OWN_VARIANTS: u64 = 2000;
+
+fn own_variants() -> u64 {
+    let number = std::env::var("RTBENCH_VARIANTS").ok();
+    number.map_or(OWN_VARIANTS, |number| number.parse().expect("RTBENCH_VARIANTS is a number"))
+}
 
 /// Small files with all features, which are tested even without the fixtures.
 const OWN: [(&str, &str); 6] = [
@@ -138,7 +144,7 @@ fn own_files_survive_every_mutation() {
     for (name, text) in OWN {
         let whole = Files::new(&[(name, text)]).load(name);
         assert!(whole.is_ok(), "{name}: {}", whole.unwrap_err());
-        load_own_variants(&Case { variants: OWN_VARIANTS, ..Case::new(name, text.as_bytes(), mutate::text) });
+        load_own_variants(&Case { variants: own_variants(), ..Case::new(name, text.as_bytes(), mutate::text) });
     }
 }
 
@@ -171,7 +177,7 @@ fn meshes_with_a_material_library_survive_every_mutation() {
     assert!(whole.materials.len() >= 3 && !whole.lights.is_empty(), "{:?}", whole.warnings);
     for (name, bytes) in &files {
         let case = Case::new(name, bytes, mutate::text);
-        load_own_variants(&Case { load: "all.obj", other_files: &files, variants: OWN_VARIANTS, ..case });
+        load_own_variants(&Case { load: "all.obj", other_files: &files, variants: own_variants(), ..case });
     }
 }
 
@@ -189,8 +195,8 @@ fn gltf_of_both_kinds_survives_every_mutation() {
     assert!(
         a.content_hash() == b.content_hash() && a.triangles.len() >= 8 && a.camera.is_some() && a.lights.len() == 3
     );
-    load_own_variants(&Case { variants: OWN_VARIANTS, ..Case::new("all.gltf", text.as_bytes(), mutate::text) });
-    load_own_variants(&Case { variants: OWN_VARIANTS, ..Case::new("all.glb", &binary, mutate::bytes) });
+    load_own_variants(&Case { variants: own_variants(), ..Case::new("all.gltf", text.as_bytes(), mutate::text) });
+    load_own_variants(&Case { variants: own_variants(), ..Case::new("all.glb", &binary, mutate::bytes) });
 }
 
 #[test]
@@ -208,5 +214,5 @@ fn caches_survive_every_mutation() {
         cache::reseal(&mut bytes);
         bytes
     };
-    load_own_variants(&Case { variants: OWN_VARIANTS, ..Case::new("resealed.rtb", &bytes, resealed) });
+    load_own_variants(&Case { variants: own_variants(), ..Case::new("resealed.rtb", &bytes, resealed) });
 }
