@@ -6,6 +6,7 @@ mod broken_inventor;
 mod broken_ply;
 mod built_in;
 mod cache;
+mod cases;
 mod catalogue;
 mod estimate;
 mod fetch;

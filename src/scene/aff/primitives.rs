@@ -1,8 +1,8 @@
 //! Reads the primitives, which are converted to triangles.
 
 use super::AffReader;
-use crate::scene::text::{Fault, Tokenizer, quote_bytes};
 use crate::scene::mesh_builder::has_direction;
+use crate::scene::text::{Fault, Tokenizer, quote_bytes};
 use glam::DVec3;
 
 /// The index of the normal of a corner without one.

@@ -93,11 +93,11 @@ impl NotANumber {
         match field {
             "point" | "vertex" => NotANumber::Position,
             "ambientColor" | "ambientIntensity" | "color" | "creaseAngle" | "diffuseColor" | "direction"
-            | "emissiveColor" | "heightAngle" | "intensity" | "location" | "materialIndex" | "normal" | "normalIndex"
-            | "orderedRGBA" | "orientation" | "position" | "rgb" | "rgba" | "shininess" | "specularColor"
-            | "transparency" | "vector" => NotANumber::Default,
-            "axis" | "materialBinding" | "model" | "name" | "normalBinding" | "origin" | "parts" | "style" | "units"
-            | "value" | "vertexOrdering" | "whatToReset" => NotANumber::Word,
+            | "emissiveColor" | "heightAngle" | "intensity" | "location" | "materialIndex" | "normal"
+            | "normalIndex" | "orderedRGBA" | "orientation" | "position" | "rgb" | "rgba" | "shininess"
+            | "specularColor" | "transparency" | "vector" => NotANumber::Default,
+            "axis" | "materialBinding" | "model" | "name" | "normalBinding" | "origin" | "parts" | "style"
+            | "units" | "value" | "vertexOrdering" | "whatToReset" => NotANumber::Word,
             _ => NotANumber::Refused,
         }
     }

@@ -82,9 +82,11 @@ impl InventorReader {
         let count = state.materials.len();
         if index >= count {
             match field {
-                Some(field) if self.faults.is_empty() => self.faults.push(field.fault(format!(
-                    "index {index} is out of range, there are {count} materials: they are repeated"
-                ))),
+                Some(field) if self.faults.is_empty() => {
+                    self.faults.push(field.fault(format!(
+                        "index {index} is out of range, there are {count} materials: they are repeated"
+                    )))
+                }
                 Some(_) => {}
                 None => self.mesh.warnings.add("fewer materials than bindings: the materials are repeated"),
             }

@@ -130,10 +130,8 @@ impl ObjReader<'_> {
         let place = place(self.path, line);
         let Some(path) = find(folder, name) else {
             sources::absent(&folder.join(file_name(name)));
-            let warning = format!(
-                "{place}: material library {} does not exist: its materials are neutral grey",
-                printable(name)
-            );
+            let warning =
+                format!("{place}: material library {} does not exist: its materials are neutral grey", printable(name));
             self.warnings.add(&warning);
             return Ok(());
         };

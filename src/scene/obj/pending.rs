@@ -85,7 +85,8 @@ impl Problems {
             warn(line, "a normal is not three finite numbers: such normals are computed");
         }
         if let Some((count, line)) = self.missing {
-            let text = format!("a corner has a normal that does not exist: the normals of {count} corners are computed");
+            let text =
+                format!("a corner has a normal that does not exist: the normals of {count} corners are computed");
             warn(line, &text);
         }
         if let Some((last, line)) = self.last_normal.filter(|(last, _)| *last as usize > normals) {
@@ -96,7 +97,10 @@ impl Problems {
             warn(line, "a texture coordinate of a corner is not an index: texture coordinates are ignored");
         }
         if let Some(line) = unusual {
-            warn(line, "a number has commas, a Fortran exponent, a plus sign or decimals that are not usual: it is read");
+            warn(
+                line,
+                "a number has commas, a Fortran exponent, a plus sign or decimals that are not usual: it is read",
+            );
         }
         warnings
     }

@@ -91,7 +91,9 @@ pub fn read<S: RowReader>(
     if body.triangles.is_empty() {
         let line = faces.first().map(|list| list.element.line);
         return Err(match body.first.take() {
-            Some(fault) => Fault { problem: format!("{}, and no face is without such a vertex", fault.problem), ..fault },
+            Some(fault) => {
+                Fault { problem: format!("{}, and no face is without such a vertex", fault.problem), ..fault }
+            }
             None => Fault::new(line, "no face has three corners or more", "export it as a mesh"),
         });
     }

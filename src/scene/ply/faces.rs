@@ -56,9 +56,11 @@ impl FaceList<'_> {
                 FaceError::Row(error) => explain(error, source, element, row),
                 FaceError::Index(index) => Fault::new(
                     source.line(),
-                    format!("{} {row} uses vertex {index}, but there are only {vertices} vertices (0 to {})", element.name, {
-                        vertices.saturating_sub(1)
-                    }),
+                    format!(
+                        "{} {row} uses vertex {index}, but there are only {vertices} vertices (0 to {})",
+                        element.name,
+                        { vertices.saturating_sub(1) }
+                    ),
                     "repair the face or the vertex count",
                 ),
                 FaceError::TooMany => too_many(source.line(), body.triangles.len() as u64, "triangle"),

@@ -314,7 +314,8 @@ fn parse_property(
         ["property", list, count, item, name] if list.eq_ignore_ascii_case("list") => {
             let (count, item) = (scalar(count)?, scalar(item)?);
             if used && !(count.is_integer() && item.is_integer()) {
-                warnings.push((line, "the list has a count or indices of a type that is not for whole numbers".to_owned()));
+                warnings
+                    .push((line, "the list has a count or indices of a type that is not for whole numbers".to_owned()));
             }
             Ok(Property { name: name.to_owned(), kind: PropertyType::List { count, item } })
         }

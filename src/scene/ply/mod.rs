@@ -66,9 +66,7 @@ fn parse(bytes: &[u8], offset: Option<DVec3>) -> Result<Body, Fault> {
                 free.or_else(|| ascii(Layout::Surplus).ok().filter(whole)).ok_or(fault)
             })
         }
-        Encoding::LittleEndian => {
-            body::read(&header, vertex, &faces, Binary::<false>::new(body), body.len(), offset)
-        }
+        Encoding::LittleEndian => body::read(&header, vertex, &faces, Binary::<false>::new(body), body.len(), offset),
         Encoding::BigEndian => body::read(&header, vertex, &faces, Binary::<true>::new(body), body.len(), offset),
     }?;
     warnings.append(&mut body.warnings);

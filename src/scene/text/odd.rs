@@ -6,8 +6,17 @@ use super::number;
 /// The spellings of a number that is none, in lower case and without a sign. Scripting languages write the words of the
 /// second line.
 const NONE: [&[u8]; 11] = [
-    b"nan", b"qnan", b"snan", b"nanq", b"nans", b"ind", //
-    b"null", b"none", b"undefined", b"n/a", b"#n/a",
+    b"nan",
+    b"qnan",
+    b"snan",
+    b"nanq",
+    b"nans",
+    b"ind", //
+    b"null",
+    b"none",
+    b"undefined",
+    b"n/a",
+    b"#n/a",
 ];
 
 /// The letters after `1.#`, as the C library of Windows writes them; digits and exponents may follow.
@@ -88,9 +97,10 @@ mod tests {
 
     #[test]
     fn numbers_that_are_none_are_recognised_in_every_spelling() {
-        for word in "nan NaN -nan +NAN nan(ind) -nan(ind) -nan(snan) nan(0x8000000000000) NaNQ 1.#QNAN -1.#IND -1.#IND00 \
+        for word in
+            "nan NaN -nan +NAN nan(ind) -nan(ind) -nan(snan) nan(0x8000000000000) NaNQ 1.#QNAN -1.#IND -1.#IND00 \
             1.#SNAN 1.#QNAN0 1.#NAN -1.#J 1,#QNAN *** null undefined"
-            .split_ascii_whitespace()
+                .split_ascii_whitespace()
         {
             assert!(value(word.as_bytes()).is_some_and(f64::is_nan), "{word}");
         }
@@ -110,7 +120,9 @@ mod tests {
         for (word, number) in [("2.0D0", 2.0), ("3.0d+00", 3.0), ("-1.5D-01", -0.15), ("1D2", 100.0)] {
             assert_eq!(value(word.as_bytes()), Some(number), "{word}");
         }
-        for word in ["", "-", "zero", "1..2", "1-2", "d", "1d", "1d2d3", "1.#", "1.#X", "a.#IND", "nan)", "nan(", "*", "0x1"] {
+        for word in
+            ["", "-", "zero", "1..2", "1-2", "d", "1d", "1d2d3", "1.#", "1.#X", "a.#IND", "nan)", "nan(", "*", "0x1"]
+        {
             assert_eq!(value(word.as_bytes()), None, "{word}");
         }
         assert_eq!([whole(b"3.0"), whole(b"-1.00"), whole(b"1e3")], [Some(3), Some(-1), Some(1000)]);

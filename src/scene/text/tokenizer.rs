@@ -1,7 +1,7 @@
 //! Splits a text into tokens with line numbers, without copying. The text may have any encoding that extends ASCII.
 
-use super::{number, odd};
 use super::{Fault, quote_bytes};
+use super::{number, odd};
 
 /// The meaning of a byte.
 #[derive(Clone, Copy, PartialEq, Eq)]
