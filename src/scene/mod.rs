@@ -354,14 +354,10 @@ impl Scene {
     }
 }
 
-/// Reads a file that is or may be text, and removes a UTF-8 byte order mark, which no format allows. All readers get
-/// their bytes from here.
+/// Reads a file that is or may be text: UTF-16 with a byte order mark becomes UTF-8, and a byte order mark is removed,
+/// which no format allows. All readers get their bytes from here.
 fn read_text(path: &Path) -> Result<Vec<u8>> {
-    let mut content = read_file(path)?;
-    if content.starts_with("\u{feff}".as_bytes()) {
-        content.drain(.."\u{feff}".len());
-    }
-    Ok(content)
+    text::to_utf8(read_file(path)?).map_err(|fault| fault.of(path))
 }
 
 /// Refuses what is no regular file.

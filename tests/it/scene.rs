@@ -7,6 +7,7 @@ mod broken_ply;
 mod budgets;
 mod built_in;
 mod cache;
+mod cases;
 mod catalogue;
 mod estimate;
 mod fetch;

@@ -25,6 +25,11 @@ impl Default for Viewpoint {
 }
 
 impl Viewpoint {
+    /// False if a number is not finite.
+    pub fn is_finite(&self) -> bool {
+        [self.from, self.at, self.up, DVec3::splat(self.angle)].iter().all(|v| v.is_finite())
+    }
+
     /// Reads the parameters of `v`: its keywords in any order; all of them are optional.
     pub fn read(tokens: &mut Tokenizer) -> Result<Viewpoint, Fault> {
         let mut view = Viewpoint::default();
@@ -36,8 +41,8 @@ impl Viewpoint {
                 b"up" => &mut view.up,
                 b"angle" => {
                     tokens.skip(1, "v")?;
-                    view.angle = tokens.number("angle")?;
-                    if !(view.angle > 0.0 && view.angle < 180.0) {
+                    view.angle = tokens.any_number("angle")?;
+                    if view.angle.is_finite() && !(view.angle > 0.0 && view.angle < 180.0) {
                         let problem = format!("the field of view of {} degrees is impossible", view.angle);
                         return Err(tokens.fault(problem, "give an angle between 0 and 180"));
                     }
@@ -45,16 +50,16 @@ impl Viewpoint {
                 }
                 b"hither" | b"resolution" => {
                     tokens.skip(1, "v")?;
-                    tokens.number("v")?;
+                    tokens.any_number("v")?;
                     if keyword == b"resolution" {
-                        tokens.number("v")?;
+                        tokens.any_number("v")?;
                     }
                     continue;
                 }
                 _ => return Ok(view),
             };
             tokens.skip(1, "v")?;
-            *vector = tokens.numbers("v").map(DVec3::from)?;
+            *vector = DVec3::from(tokens.any_numbers("v")?);
         }
     }
 }

@@ -4,7 +4,7 @@ use super::camera::{Animation, Viewpoint};
 use super::keys::{Keyframes, rotation};
 use super::{AffReader, Pass};
 use crate::scene::Material;
-use crate::scene::text::{Fault, ReadError, Tokenizer, quote_bytes};
+use crate::scene::text::{Fault, ReadError, Tokenizer, odd, place, quote_bytes};
 use glam::{DAffine3, DVec3};
 use std::path::Path;
 
@@ -46,7 +46,10 @@ impl AffReader {
                         self.mesh.pop();
                     }
                 }
-                _ => self.entity(entity, tokens)?,
+                _ => {
+                    self.entity(entity, path, tokens)?;
+                    self.mesh.not_finite.set_place(|| place(path, tokens.line()));
+                }
             }
         }
         match open.last() {
@@ -98,12 +101,46 @@ impl AffReader {
         }
     }
 
-    fn entity(&mut self, entity: &[u8], tokens: &mut Tokenizer) -> Result<(), Fault> {
+    /// Warns in the second pass that numbers of an entity are not finite.
+    #[cold]
+    fn warn(&mut self, path: &Path, tokens: &Tokenizer, text: &str) {
+        if self.pass == Pass::Mesh {
+            self.mesh.warnings.add(&format!("{}: {text}", place(path, tokens.line())));
+        }
+    }
+
+    /// Reads a colour. One that is not finite is a warning, and replaced by `default`.
+    fn colour(&mut self, entity: &str, default: DVec3, path: &Path, tokens: &mut Tokenizer) -> Result<DVec3, Fault> {
+        let colour = DVec3::from(tokens.any_numbers(entity)?);
+        if colour.is_finite() {
+            return Ok(colour);
+        }
+        self.warn(path, tokens, &format!("{entity}: the colour is not finite: the default is used"));
+        Ok(default)
+    }
+
+    /// Reads a number of a material. One that is not finite is a warning, and replaced by `default`.
+    fn property(&mut self, entity: &str, default: f64, path: &Path, tokens: &mut Tokenizer) -> Result<f64, Fault> {
+        let number = tokens.any_number(entity)?;
+        if number.is_finite() {
+            return Ok(number);
+        }
+        self.warn(path, tokens, &format!("{entity}: a number is not finite: its default is used"));
+        Ok(default)
+    }
+
+    fn entity(&mut self, entity: &[u8], path: &Path, tokens: &mut Tokenizer) -> Result<(), Fault> {
         let keys = self.pass == Pass::Keys;
         match entity {
-            b"v" => self.view = Some(Viewpoint::read(tokens)?),
-            b"b" => self.background = tokens.numbers("b").map(DVec3::from)?.as_vec3().max(glam::Vec3::ZERO),
-            b"am" => self.ambient = tokens.numbers("am").map(DVec3::from)?,
+            b"v" => {
+                let view = Viewpoint::read(tokens)?;
+                if !view.is_finite() {
+                    self.warn(path, tokens, "v: the viewpoint is not finite: ignored");
+                }
+                self.view = Some(view).filter(Viewpoint::is_finite);
+            }
+            b"b" => self.background = self.colour("b", DVec3::ZERO, path, tokens)?.as_vec3().max(glam::Vec3::ZERO),
+            b"am" => self.ambient = self.colour("am", DVec3::ONE, path, tokens)?,
             b"a" => self.animation = Some(Animation::read(tokens)?),
             b"d" => self.detail = tokens.integer("d")?,
             b"k" => {
@@ -120,9 +157,9 @@ impl AffReader {
                         .add(&format!("keyframes {name} are defined more than once: the last definition is used"));
                 }
             }
-            b"l" | b"la" => self.light(entity == b"la", tokens)?,
-            b"f" => self.plain_material(tokens)?,
-            b"fm" => self.material(tokens)?,
+            b"l" | b"la" => self.light(entity == b"la", path, tokens)?,
+            b"f" => self.plain_material(path, tokens)?,
+            b"fm" => self.material(path, tokens)?,
             _ if keys => self.skip_primitive(entity, tokens)?,
             _ => self.primitive(entity, tokens)?,
         }
@@ -130,12 +167,16 @@ impl AffReader {
     }
 
     /// Reads the parameters of `l`, or of `la`, which keyframes animate.
-    fn light(&mut self, animated: bool, tokens: &mut Tokenizer) -> Result<(), Fault> {
+    fn light(&mut self, animated: bool, path: &Path, tokens: &mut Tokenizer) -> Result<(), Fault> {
         let name = if animated { Some(tokens.need("la")?) } else { None };
-        let position = tokens.numbers("l").map(DVec3::from)?;
-        let coloured = tokens.peek_on_line().is_some_and(|word| word[0].is_ascii_digit() || b"+-.".contains(&word[0]));
-        let colour = if coloured { tokens.numbers("l").map(DVec3::from)? } else { DVec3::ONE };
+        let position = DVec3::from(tokens.any_numbers("l")?);
+        let coloured = tokens.peek_on_line().is_some_and(|word| odd::value(word).is_some());
+        let colour = if coloured { self.colour("l", DVec3::ONE, path, tokens)? } else { DVec3::ONE };
         if !self.building() {
+            return Ok(());
+        }
+        if !position.is_finite() {
+            self.warn(path, tokens, "l: the light's position is not finite: the light is ignored");
             return Ok(());
         }
         let (position, visible) = match name {
@@ -149,14 +190,24 @@ impl AffReader {
     }
 
     /// Reads the parameters of `f`: colour, Kd, Ks, exponent, transparency, index of refraction, and optionally the
-    /// name of a texture on the same line.
-    fn plain_material(&mut self, tokens: &mut Tokenizer) -> Result<(), Fault> {
-        let [r, g, b, diffuse, specular, exponent, transparency, _index] = tokens.numbers("f")?;
+    /// name of a texture on the same line. All after the colour may be missing, with a warning.
+    fn plain_material(&mut self, path: &Path, tokens: &mut Tokenizer) -> Result<(), Fault> {
+        let colour = self.colour("f", GREY, path, tokens)?;
+        let (mut properties, mut given) = (FILL, 0);
+        while given < FILL.len() && tokens.peek().is_some_and(|word| odd::value(word).is_some()) {
+            properties[given] = self.property("f", FILL[given], path, tokens)?;
+            given += 1;
+        }
+        if given < FILL.len() {
+            let text = format!("f: {} numbers instead of 8: the others have their defaults", 3 + given);
+            self.warn(path, tokens, &text);
+        }
+        let [diffuse, specular, exponent, transparency, _index] = properties;
         if tokens.peek_on_line().is_some_and(|word| word.contains(&b'.')) {
             tokens.skip(1, "f")?;
             self.texture();
         }
-        let diffuse = (DVec3::new(r, g, b) * diffuse).as_vec3();
+        let diffuse = (colour * diffuse).as_vec3();
         let ambient = diffuse * 0.1 * self.ambient.as_vec3();
         let specular = glam::Vec3::splat(specular as f32);
         let material = Material { ambient, diffuse, ..Material::neutral() };
@@ -165,11 +216,14 @@ impl AffReader {
     }
 
     /// Reads the parameters of `fm`: ambient, diffuse and specular colour, exponent, transparency, index of refraction.
-    fn material(&mut self, tokens: &mut Tokenizer) -> Result<(), Fault> {
-        let ambient = tokens.numbers("fm").map(DVec3::from)? * self.ambient;
-        let diffuse = tokens.numbers("fm").map(DVec3::from)?;
-        let specular = tokens.numbers("fm").map(DVec3::from)?;
-        let [exponent, transparency, _index] = tokens.numbers("fm")?;
+    fn material(&mut self, path: &Path, tokens: &mut Tokenizer) -> Result<(), Fault> {
+        let ambient = self.colour("fm", GREY * 0.1, path, tokens)? * self.ambient;
+        let diffuse = self.colour("fm", GREY, path, tokens)?;
+        let specular = self.colour("fm", DVec3::ZERO, path, tokens)?;
+        let [_, _, exponent, transparency, index] = FILL;
+        let exponent = self.property("fm", exponent, path, tokens)?;
+        let transparency = self.property("fm", transparency, path, tokens)?;
+        self.property("fm", index, path, tokens)?;
         let luminance = specular.dot(LUMINANCE).clamp(0.0, 1.0) as f32;
         let material = Material { ambient: ambient.as_vec3(), diffuse: diffuse.as_vec3(), ..Material::neutral() };
         self.set_material(material.shiny(specular.as_vec3(), exponent as f32, luminance), transparency);
@@ -192,6 +246,12 @@ impl AffReader {
         }
     }
 }
+
+/// The colour of a material whose colour is not finite.
+const GREY: DVec3 = DVec3::splat(0.7);
+
+/// The defaults of `f` after its colour: Kd, Ks, exponent, transparency, index of refraction.
+const FILL: [f64; 5] = [1.0, 0.0, 10.0, 0.0, 1.0];
 
 /// Weights of linear red, green and blue in the luminance (Rec. 709).
 const LUMINANCE: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);

@@ -23,7 +23,7 @@ mod primitives;
 mod spline;
 
 use super::mesh_builder::MeshBuilder;
-use super::text::{Includes, ReadError, Syntax, Tokenizer};
+use super::text::{Includes, ReadError, Syntax, Tokenizer, refuse_zeros};
 use super::{Options, Scene};
 use crate::error::{Error, Result};
 use camera::{Animation, Viewpoint};
@@ -112,6 +112,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
 impl AffReader {
     /// Reads one file in the current pass.
     fn file(&mut self, path: &Path, bytes: &[u8]) -> Result<()> {
+        refuse_zeros(bytes).map_err(|fault| fault.of(path))?;
         let mut tokens = Tokenizer::new(bytes, &SYNTAX);
         self.entities(path, &mut tokens).map_err(|error: ReadError| error.at(tokens.line()).of(path))
     }

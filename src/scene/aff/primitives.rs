@@ -1,8 +1,12 @@
 //! Reads the primitives, which are converted to triangles.
 
 use super::AffReader;
+use crate::scene::mesh_builder::has_direction;
 use crate::scene::text::{Fault, Tokenizer, quote_bytes};
 use glam::DVec3;
+
+/// The index of the normal of a corner without one.
+const NO_NORMAL: u32 = u32::MAX;
 
 /// A position and a normal.
 type Corner = (DVec3, DVec3);
@@ -34,11 +38,11 @@ impl AffReader {
         }
         match entity {
             b"s" => {
-                let [x, y, z, radius] = tokens.numbers("s")?;
+                let [x, y, z, radius] = tokens.any_numbers("s")?;
                 self.mesh.sphere(DVec3::new(x, y, z), radius, self.segments)
             }
             b"c" => {
-                let [a, b, c, base, x, y, z, apex] = tokens.numbers("c")?;
+                let [a, b, c, base, x, y, z, apex] = tokens.any_numbers("c")?;
                 match self.cones {
                     true => self.mesh.cone((DVec3::new(a, b, c), base), (DVec3::new(x, y, z), apex), self.segments),
                     false => Ok(()),
@@ -64,7 +68,7 @@ impl AffReader {
                     if entity == b"ttp" {
                         normals.push(vector(tokens, "ttp")?);
                     }
-                    tokens.numbers::<2>("tt")?;
+                    tokens.skip(2, "tt")?;
                 }
                 self.polygon(&corners, &normals)
             }
@@ -149,33 +153,56 @@ impl AffReader {
             return tokens.skip(triangles * indices, "triangles");
         }
         self.mesh.new_shape();
+        let mut without_normal = normals.iter().filter(|normal| !has_direction(**normal)).count();
         for _ in 0..triangles {
-            let mut index = |count| -> Result<[usize; 3], Fault> {
-                Ok([tokens.index(count, "m")?, tokens.index(count, "m")?, tokens.index(count, "m")?])
+            let corners = [tokens.index(count, "m")?, tokens.index(count, "m")?, tokens.index(count, "m")?];
+            let given = match normal_count {
+                None => None,
+                Some(count) => {
+                    let found = normal_indices(tokens, count)?;
+                    without_normal += usize::from(found.is_none());
+                    found
+                }
             };
-            let corners = index(count)?;
-            let given = normal_count.map(&mut index).transpose()?;
-            texture_count.map(&mut index).transpose()?;
+            if texture_count.is_some() {
+                tokens.skip(3, "m")?;
+            }
+            if !self.mesh.keep_if(corners.iter().all(|&corner| positions[corner].is_finite())) {
+                continue;
+            }
             let mut vertices = [0; 3];
             for (corner, vertex) in vertices.iter_mut().enumerate() {
                 let at = corners[corner];
                 // Without normals in the file, vertices have none, and triangles have flat shading.
-                let normal = given.map_or(0, |given| given[corner]);
+                let normal = given.map_or(NO_NORMAL, |given| given[corner] as u32);
                 let direction = given.map_or(DVec3::ZERO, |given| normals[given[corner]]);
-                *vertex = self.mesh.indexed_vertex([at as u32, normal as u32], positions[at], direction)?;
+                *vertex = self.mesh.indexed_vertex([at as u32, normal], positions[at], direction)?;
             }
             self.mesh.triangle(vertices)?;
+        }
+        if without_normal > 0 {
+            self.mesh.warnings.add("mesh with normals that are not finite, zero or missing: the triangles' normals");
         }
         Ok(())
     }
 }
 
 fn vector(tokens: &mut Tokenizer, context: &str) -> Result<DVec3, Fault> {
-    tokens.numbers(context).map(DVec3::from)
+    tokens.any_numbers(context).map(DVec3::from)
 }
 
 fn corner(tokens: &mut Tokenizer, context: &str) -> Result<Corner, Fault> {
     Ok((vector(tokens, context)?, vector(tokens, context)?))
+}
+
+/// The indices of the normals of a triangle; `None` if one of them is out of range.
+fn normal_indices(tokens: &mut Tokenizer, count: usize) -> Result<Option<[usize; 3]>, Fault> {
+    let given = [tokens.integer("m")?, tokens.integer("m")?, tokens.integer("m")?];
+    let indices = given.map(|index| usize::try_from(index).ok().filter(|&index| index < count));
+    Ok(match indices {
+        [Some(a), Some(b), Some(c)] => Some([a, b, c]),
+        _ => None,
+    })
 }
 
 /// Reads `count` values; the count has been compared with the size of the file.

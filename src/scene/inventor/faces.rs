@@ -255,7 +255,10 @@ impl<'t> BindingIndices<'t> {
         match self.binding {
             Binding::Overall => count > 0,
             // Without coordIndex, the number of a corner is the index of its coordinate.
-            Binding::Vertex => matches!(faces.runs, Runs::Counted(_)) && count >= faces.coordinates.len(),
+            Binding::Vertex => {
+                let plain = self.indices.is_none() && matches!(faces.runs, Runs::Counted(_));
+                plain && count >= faces.coordinates.len()
+            }
             Binding::Part | Binding::Face => false,
         }
     }

@@ -41,7 +41,7 @@ mod tree;
 mod view;
 
 use super::mesh_builder::MeshBuilder;
-use super::text::{Fault, Includes, ReadError};
+use super::text::{Fault, Includes, ReadError, refuse_zeros};
 use super::{Options, Scene, SceneCamera};
 use crate::error::{Error, Result};
 use state::State;
@@ -77,6 +77,8 @@ struct InventorReader {
     depth: usize,
     /// Number of values processed so far.
     work: usize,
+    /// Errors of the current node that are warnings.
+    faults: Vec<Fault>,
 }
 
 /// Reads the file and the files that it includes.
@@ -94,6 +96,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
         distant_lights: Vec::new(),
         depth: 0,
         work: 0,
+        faults: Vec::new(),
     };
     reader.mesh.read(bytes.len());
     reader.file(path, bytes, None)?;
@@ -132,6 +135,7 @@ impl InventorReader {
 
     fn tree(&mut self, bytes: &[u8]) -> Result<(Tree, f64), Fault> {
         let dialect = header::dialect(bytes)?;
+        refuse_zeros(bytes)?;
         Ok((parse::parse(bytes, &mut self.mesh)?, dialect.crease_angle))
     }
 

@@ -74,6 +74,35 @@ pub fn field(name: &[u8]) -> Option<&'static str> {
     FIELDS.iter().find(|known| known.as_bytes() == name).copied()
 }
 
+/// The rule for a value of a numeric field that is not a finite number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NotANumber {
+    /// It is an error.
+    Refused,
+    /// A position: it is kept if it is a spelling of a number that is none.
+    Position,
+    /// Not geometry: it becomes NaN, and what it belongs to has its default.
+    Default,
+    /// The field has words, which may begin like numbers.
+    Word,
+}
+
+impl NotANumber {
+    /// The rule of a field.
+    pub fn of(field: &str) -> NotANumber {
+        match field {
+            "point" | "vertex" => NotANumber::Position,
+            "ambientColor" | "ambientIntensity" | "color" | "creaseAngle" | "diffuseColor" | "direction"
+            | "emissiveColor" | "heightAngle" | "intensity" | "location" | "materialIndex" | "normal"
+            | "normalIndex" | "orderedRGBA" | "orientation" | "position" | "rgb" | "rgba" | "shininess"
+            | "specularColor" | "transparency" | "vector" => NotANumber::Default,
+            "axis" | "materialBinding" | "model" | "name" | "normalBinding" | "origin" | "parts" | "style"
+            | "units" | "value" | "vertexOrdering" | "whatToReset" => NotANumber::Word,
+            _ => NotANumber::Refused,
+        }
+    }
+}
+
 const NODES: &[(&str, NodeType)] = &[
     ("Separator", NodeType::Separator),
     ("Group", NodeType::Group),

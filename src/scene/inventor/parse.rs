@@ -5,10 +5,10 @@
 //! unknown nodes can be skipped. Commas are blanks. `~` after a field means that the field is ignored. `=` connects a
 //! field to an animated value; the values before it are the initial ones.
 
-use super::node_type::{self, NodeType};
+use super::node_type::{self, NodeType, NotANumber};
 use super::tree::{Field, Node, Tree, Values};
 use crate::scene::mesh_builder::MeshBuilder;
-use crate::scene::text::{Fault, Syntax, Tokenizer, number, quote_bytes};
+use crate::scene::text::{Fault, Syntax, Tokenizer, number, odd, quote_bytes};
 use std::collections::HashMap;
 
 /// The largest nesting depth of nodes, through `USE` and includes.
@@ -164,7 +164,7 @@ impl<'a> Parser<'a, '_> {
             return Err(self.tokens.fault(problem, "check for a missing bracket before it"));
         }
         let known = node_type::field(name).filter(|_| node.kind != NodeType::Irrelevant);
-        let values = self.values(name, known.is_some())?;
+        let values = self.values(name, known)?;
         let ignored = self.tokens.peek() == Some(b"~");
         if ignored {
             self.tokens.next();
@@ -191,12 +191,12 @@ impl<'a> Parser<'a, '_> {
         Ok(())
     }
 
-    /// Parses the values of a field; `None` if there are none, or they are not `wanted`.
-    fn values(&mut self, name: &'a [u8], wanted: bool) -> Result<Option<Values>, Fault> {
+    /// Parses the values of a field; `None` if there are none, or they are not of a `known` field.
+    fn values(&mut self, name: &'a [u8], known: Option<&'static str>) -> Result<Option<Values>, Fault> {
         let Some(first) = self.tokens.peek() else {
             return Err(self.tokens.fault(format!("{}: the file ends", quote_bytes(name)), "the file is truncated"));
         };
-        let mut list = List::new(wanted);
+        let mut list = List::new(known);
         match first[0] {
             b'~' | b'=' => return Ok(None),
             b'[' => {
@@ -221,7 +221,7 @@ impl<'a> Parser<'a, '_> {
                     }
                 }
             }
-            _ if is_number(first) => {
+            _ if is_number(first) && list.begins(first) => {
                 while let Some(word) = self.tokens.peek().filter(|word| is_number(word)) {
                     self.tokens.next();
                     self.item(name, word, &mut list)?;
@@ -246,15 +246,29 @@ impl<'a> Parser<'a, '_> {
     /// Adds a value that begins with `word` to the list.
     #[inline]
     fn item(&mut self, name: &[u8], word: &'a [u8], list: &mut List) -> Result<(), Fault> {
-        if is_number(word) {
-            let Some(value) = value(word) else {
-                let (name, word) = (String::from_utf8_lossy(name), quote_bytes(word));
-                return Err(self.tokens.fault(format!("{name}: {word} is not a finite number"), ""));
-            };
-            list.number(value);
-            return Ok(());
+        match is_number(word).then(|| value(word)).flatten() {
+            Some(value) if list.rule != NotANumber::Word => {
+                list.number(value);
+                Ok(())
+            }
+            _ => self.item_of_words(name, word, list),
         }
-        self.item_of_words(name, word, list)
+    }
+
+    /// The value of a word of a numeric field that is not a finite number; `None` if it remains a word.
+    #[cold]
+    fn odd_number(&self, name: &[u8], word: &[u8], list: &List) -> Result<Option<f64>, Fault> {
+        match (list.rule, odd::value(word)) {
+            (NotANumber::Word, _) => Ok(None),
+            (_, Some(value)) if value.is_finite() => Ok(Some(value)),
+            (NotANumber::Position, Some(value)) => Ok(Some(value)),
+            (NotANumber::Default, _) => Ok(Some(f64::NAN)),
+            _ if is_number(word) && list.wanted => {
+                let (name, word) = (String::from_utf8_lossy(name), quote_bytes(word));
+                Err(self.tokens.fault(format!("{name}: {word} is not a finite number"), ""))
+            }
+            _ => Ok(None),
+        }
     }
 
     fn item_of_words(&mut self, name: &[u8], word: &'a [u8], list: &mut List) -> Result<(), Fault> {
@@ -268,7 +282,15 @@ impl<'a> Parser<'a, '_> {
                 let (name, word) = (String::from_utf8_lossy(name), quote_bytes(word));
                 return Err(self.tokens.fault(format!("{name}: {word} is not a value"), ""));
             }
-            _ => word,
+            _ => {
+                if list.wanted
+                    && let Some(value) = self.odd_number(name, word, list)?
+                {
+                    list.number(value);
+                    return Ok(());
+                }
+                word
+            }
         };
         if list.wanted {
             list.words.push(text.into());
@@ -308,14 +330,24 @@ fn value(word: &[u8]) -> Option<f64> {
 /// The values of a field while it is parsed.
 struct List {
     wanted: bool,
+    rule: NotANumber,
     numbers: Vec<f64>,
     words: Vec<Box<[u8]>>,
     node: Option<u32>,
 }
 
 impl List {
-    fn new(wanted: bool) -> List {
-        List { wanted, numbers: Vec::new(), words: Vec::new(), node: None }
+    fn new(known: Option<&'static str>) -> List {
+        let rule = known.map_or(NotANumber::Word, NotANumber::of);
+        List { wanted: known.is_some(), rule, numbers: Vec::new(), words: Vec::new(), node: None }
+    }
+
+    /// True if a word that begins like a number begins a list of numbers; otherwise it is a string without quotes.
+    fn begins(&self, word: &[u8]) -> bool {
+        match self.rule {
+            NotANumber::Word => !self.wanted && (value(word).is_some() || odd::value(word).is_some()),
+            _ => true,
+        }
     }
 
     #[inline]

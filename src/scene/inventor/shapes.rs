@@ -2,7 +2,7 @@
 
 use super::InventorReader;
 use super::crease::{CornerNormal, Creased};
-use super::faces::{BindingIndices, Face, Faces};
+use super::faces::{BindingIndices, Corner, Face, Faces};
 use super::node_type::NodeType;
 use super::state::{Binding, State};
 use super::tree::{Field, Node};
@@ -43,14 +43,14 @@ impl InventorReader {
         match node.kind {
             NodeType::Cube => self.cube(node, state),
             NodeType::Sphere => {
-                self.part(0, state)?;
+                self.part(0, state);
                 self.mesh.sphere(DVec3::ZERO, node.number("radius", 1.0)?, self.segments)
             }
             NodeType::Cone => {
                 let (radius, height) = (node.number("bottomRadius", 1.0)?, node.number("height", 2.0)?);
                 let (top, up) = (DVec3::Y * height / 2.0, DVec3::Y * height.signum());
                 if node.has_part(b"SIDES")? {
-                    self.part(0, state)?;
+                    self.part(0, state);
                     self.mesh.cone((-top, radius), (top, 0.0), self.segments)?;
                 }
                 self.cap(node, state, (b"BOTTOM", 1), (-top, -up, radius))
@@ -59,7 +59,7 @@ impl InventorReader {
                 let (radius, height) = (node.number("radius", 1.0)?, node.number("height", 2.0)?);
                 let (top, up) = (DVec3::Y * height / 2.0, DVec3::Y * height.signum());
                 if node.has_part(b"SIDES")? {
-                    self.part(0, state)?;
+                    self.part(0, state);
                     self.mesh.cone((-top, radius), (top, radius), self.segments)?;
                 }
                 self.cap(node, state, (b"TOP", 1), (top, up, radius))?;
@@ -70,24 +70,38 @@ impl InventorReader {
     }
 
     /// Sets the mesh's material to that of a part of a solid.
-    fn part(&mut self, part: usize, state: &State) -> Result<(), Fault> {
+    fn part(&mut self, part: usize, state: &State) {
         let index = if state.material_binding.0 == Binding::Part { part } else { 0 };
-        let found = self.material(index, None, state)?;
+        let found = self.material(index, None, state);
         self.set_material(found);
-        Ok(())
     }
 
-    /// A material, and whether it is transparent. An index in the file, in this field, must be in range; otherwise the
-    /// materials are repeated.
-    fn material(&mut self, index: usize, field: Option<&Field>, state: &State) -> Result<(Material, bool), Fault> {
+    /// A material, and whether it is transparent. Beyond the last material they are repeated, with a warning; `field` is
+    /// the field that has the index.
+    fn material(&mut self, index: usize, field: Option<&Field>, state: &State) -> (Material, bool) {
         let count = state.materials.len();
         if index >= count {
-            if let Some(field) = field {
-                return Err(field.fault(format!("index {index} is out of range, there are {count} materials")));
+            match field {
+                Some(field) if self.faults.is_empty() => {
+                    self.faults.push(field.fault(format!(
+                        "index {index} is out of range, there are {count} materials: they are repeated"
+                    )))
+                }
+                Some(_) => {}
+                None => self.mesh.warnings.add("fewer materials than bindings: the materials are repeated"),
             }
-            self.mesh.warnings.add("fewer materials than bindings: the materials are repeated");
         }
-        Ok(state.materials.get(index, state.ambient, state.lit))
+        state.materials.get(index, state.ambient, state.lit)
+    }
+
+    /// The index of the material of a corner; that of the first material if there is no index, with a warning.
+    fn material_index(&mut self, choice: &BindingIndices, face: &Face, corner: &Corner) -> usize {
+        choice.index(face, corner).unwrap_or_else(|fault| {
+            if self.faults.is_empty() {
+                self.faults.push(Fault { problem: format!("{}: the first material is used", fault.problem), ..fault });
+            }
+            0
+        })
     }
 
     fn set_material(&mut self, (material, transparent): (Material, bool)) {
@@ -104,7 +118,7 @@ impl InventorReader {
         for (side, corners) in SIDES.into_iter().enumerate() {
             // The sides of a cube count as parts and as faces.
             let bound = matches!(state.material_binding.0, Binding::Part | Binding::Face);
-            let found = self.material(if bound { side } else { 0 }, None, state)?;
+            let found = self.material(if bound { side } else { 0 }, None, state);
             self.set_material(found);
             self.mesh.polygon(&corners.map(|signs| DVec3::from(signs) * half), &[])?;
         }
@@ -122,7 +136,7 @@ impl InventorReader {
         if !node.has_part(part.0)? {
             return Ok(());
         }
-        self.part(part.1, state)?;
+        self.part(part.1, state);
         self.mesh.ring(center, normal, [0.0, radius.abs()], self.segments)
     }
 
@@ -136,7 +150,7 @@ impl InventorReader {
         }
         let materials = BindingIndices::of(node, "materialIndex", state.material_binding)?;
         if materials.is_overall() {
-            self.part(0, state)?;
+            self.part(0, state);
         }
         let (mut points, mut directions, mut indices, mut visited) = (Vec::new(), Vec::new(), Vec::new(), 0);
         faces.visit(&mut |face: Face| {
@@ -163,7 +177,7 @@ impl InventorReader {
             }
             visited += face.corners.len();
             if !materials.is_overall() && face.corners.len() > 2 {
-                self.bound_material(&face, &materials, state)?;
+                self.bound_material(&face, &materials, state);
             }
             match &normals {
                 Normals::Flat => self.mesh.flat_polygon(&points),
@@ -180,13 +194,21 @@ impl InventorReader {
             if choice.is_within(given, faces) {
                 return Ok(Normals::Given(choice));
             }
-            let mut needed = 0;
+            let (mut needed, mut problem) = (0, None);
             faces.visit(&mut |face: Face| {
                 for corner in face.corners {
-                    needed = needed.max(1 + choice.index(&face, corner)?);
+                    match choice.index(&face, corner) {
+                        Ok(index) => needed = needed.max(1 + index),
+                        Err(fault) => _ = problem.get_or_insert(fault),
+                    }
                 }
                 Ok(())
             })?;
+            if let Some(fault) = problem {
+                let problem = format!("{}: normals are computed", fault.problem);
+                self.faults.push(Fault { problem, ..fault });
+                needed = usize::MAX;
+            }
             if needed <= given {
                 return Ok(Normals::Given(choice));
             }
@@ -200,14 +222,14 @@ impl InventorReader {
     }
 
     /// Sets the mesh's material to that of a face: if corners have different materials, the mean of them.
-    fn bound_material(&mut self, face: &Face, choice: &BindingIndices, state: &State) -> Result<(), Fault> {
-        let first = choice.index(face, &face.corners[0])?;
-        let (mut sum, mut transparent) = self.material(first, choice.field(), state)?;
+    fn bound_material(&mut self, face: &Face, choice: &BindingIndices, state: &State) {
+        let first = self.material_index(choice, face, &face.corners[0]);
+        let (mut sum, mut transparent) = self.material(first, choice.field(), state);
         let mut differ = false;
         if choice.is_per_corner() {
             for corner in &face.corners[1..] {
-                let index = choice.index(face, corner)?;
-                let (one, one_transparent) = self.material(index, choice.field(), state)?;
+                let index = self.material_index(choice, face, corner);
+                let (one, one_transparent) = self.material(index, choice.field(), state);
                 differ |= index != first;
                 transparent |= one_transparent;
                 sum.ambient += one.ambient;
@@ -219,7 +241,7 @@ impl InventorReader {
         if !differ {
             let found = state.materials.get(first, state.ambient, state.lit);
             self.set_material(found);
-            return Ok(());
+            return;
         }
         self.mesh.warnings.add("colours bound to corners: a face has the mean of its corners");
         let share = 1.0 / face.corners.len() as f32;
@@ -228,6 +250,5 @@ impl InventorReader {
         sum.specular *= share;
         sum.exponent *= share;
         self.set_material((sum, transparent));
-        Ok(())
     }
 }

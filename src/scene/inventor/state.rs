@@ -176,7 +176,7 @@ pub struct State<'t> {
     pub clockwise: bool,
     /// The ambient light.
     pub ambient: DVec3,
-    /// The child that the enclosing switch selected, as in `whichChild`.
+    /// The child that the enclosing switch selected, as in `whichChild`, or the number of the enclosing copy.
     pub selected_child: i64,
 }
 
@@ -217,51 +217,91 @@ impl State<'static> {
     }
 }
 
-/// The list in a field; `before` if it is empty or ignored (`~`), `default` if the field is absent.
+/// The list in a field that is not geometry; `before` if it is empty or ignored (`~`), `default` if the field is absent or
+/// has an error, which is added to `faults`.
 fn list<'t>(
     node: &'t Node,
     name: &str,
     width: usize,
-    before: &'t [f64],
-    default: &'t [f64],
-) -> Result<&'t [f64], Fault> {
-    match node.tuples(name, width)? {
-        Some([]) => Ok(before),
-        Some(numbers) => Ok(numbers),
-        None if node.ignores(name) => Ok(before),
-        None => Ok(default),
+    (before, default): (&'t [f64], &'t [f64]),
+    faults: &mut Vec<Fault>,
+) -> &'t [f64] {
+    match node.tuples(name, width) {
+        Ok(Some([])) => before,
+        Ok(Some(numbers)) if numbers.iter().all(|number| number.is_finite()) => numbers,
+        Ok(Some(_)) => {
+            faults.extend(node.field(name).map(|field| field.fault("a number is not finite")));
+            default
+        }
+        Ok(None) if node.ignores(name) => before,
+        Ok(None) => default,
+        Err(fault) => {
+            faults.push(fault);
+            default
+        }
     }
 }
 
+/// The value, or the default after adding the error to `faults`.
+fn or_default<T>(value: Result<T, Fault>, default: T, faults: &mut Vec<Fault>) -> T {
+    value.unwrap_or_else(|fault| {
+        faults.push(fault);
+        default
+    })
+}
+
 impl<'t> State<'t> {
-    /// Applies a property node. An absent field has its default; an empty field leaves the state unchanged.
-    pub fn set(&mut self, node: &'t Node, crease_angle: f64) -> Result<(), Fault> {
+    /// Applies a property node. An absent field has its default; an empty field leaves the state unchanged. Errors in
+    /// fields that are not geometry are added to `faults`, and the fields have their defaults.
+    ///
+    /// # Errors
+    /// Those of positions.
+    pub fn set(&mut self, node: &'t Node, crease_angle: f64, faults: &mut Vec<Fault>) -> Result<(), Fault> {
         // For nodes with a single field, an ignored field (`~`) means that the node is ignored.
-        if ["point", "vector", "value", "model", "style", "creaseAngle"].iter().any(|field| node.ignores(field)) {
+        if ["point", "vector", "value", "model", "style"].iter().any(|field| node.ignores(field)) {
             return Ok(());
         }
         match node.kind {
             NodeType::Coordinate3 => self.positions(node.tuples("point", 3)?, 3),
             NodeType::Coordinate4 => self.positions(node.tuples("point", 4)?, 4),
-            NodeType::Normal => self.normals = list(node, "vector", 3, self.normals, self.normals)?,
-            NodeType::NormalBinding => self.normal_binding = Binding::read(node, "value", NORMALS)?,
-            NodeType::MaterialBinding => self.material_binding = Binding::read(node, "value", MATERIALS)?,
-            NodeType::Material => self.material(node)?,
-            NodeType::BaseColor => self.diffuse(Colours::Rgb(list(node, "rgb", 3, &[], &GREY)?)),
+            NodeType::Normal => _ = self.normals(node, "vector", faults),
+            NodeType::NormalBinding => {
+                self.normal_binding = or_default(Binding::read(node, "value", NORMALS), NORMALS, faults);
+            }
+            NodeType::MaterialBinding => {
+                self.material_binding = or_default(Binding::read(node, "value", MATERIALS), MATERIALS, faults);
+            }
+            NodeType::Material => self.material(node, faults),
+            NodeType::BaseColor => self.diffuse(Colours::Rgb(list(node, "rgb", 3, (&[], &GREY), faults))),
             NodeType::PackedColor => {
-                self.diffuse(Colours::Rgba(list(node, "orderedRGBA", 1, &[], &PACKED_GREY)?));
-                self.diffuse(Colours::Abgr(list(node, "rgba", 1, &[], &[])?));
+                self.diffuse(Colours::Rgba(list(node, "orderedRGBA", 1, (&[], &PACKED_GREY), faults)));
+                self.diffuse(Colours::Abgr(list(node, "rgba", 1, (&[], &[]), faults)));
             }
-            NodeType::VertexProperty => self.vertex_property(node)?,
+            NodeType::VertexProperty => self.vertex_property(node, faults)?,
             NodeType::ShapeHints => {
-                self.crease_angle = node.number("creaseAngle", crease_angle)?;
-                self.clockwise = node.word("vertexOrdering")? == Some(b"CLOCKWISE");
+                if !node.ignores("creaseAngle") {
+                    let angle = or_default(node.number("creaseAngle", crease_angle), crease_angle, faults);
+                    self.crease_angle = if angle.is_finite() { angle } else { crease_angle };
+                }
+                if !node.ignores("vertexOrdering") {
+                    let ordering = or_default(node.word("vertexOrdering"), None, faults);
+                    self.clockwise = ordering == Some(b"CLOCKWISE");
+                }
             }
-            NodeType::LightModel => self.lit = node.word("model")? != Some(b"BASE_COLOR"),
-            NodeType::DrawStyle => self.filled = matches!(node.word("style")?, None | Some(b"FILLED")),
-            NodeType::Environment => {
-                let intensity = node.number("ambientIntensity", 0.2)?;
-                self.ambient = node.vector("ambientColor", DVec3::ONE)? * intensity;
+            NodeType::LightModel => {
+                self.lit = or_default(node.word("model"), None, faults) != Some(b"BASE_COLOR");
+            }
+            NodeType::DrawStyle => {
+                let style = or_default(node.word("style"), None, faults).unwrap_or(b"FILLED");
+                self.filled = !matches!(style, b"LINES" | b"POINTS" | b"INVISIBLE");
+                if self.filled && style != b"FILLED" {
+                    faults.push(unknown(node.field("style"), style));
+                }
+            }
+            NodeType::Environment if !node.ignores("ambientIntensity") && !node.ignores("ambientColor") => {
+                let intensity = or_default(node.number("ambientIntensity", 0.2), 0.2, faults);
+                let ambient = or_default(node.vector("ambientColor", DVec3::ONE), DVec3::ONE, faults) * intensity;
+                self.ambient = if ambient.is_finite() { ambient } else { DVec3::splat(0.2) };
             }
             _ => {}
         }
@@ -275,6 +315,17 @@ impl<'t> State<'t> {
         }
     }
 
+    /// Sets the normals, unless the list is empty; false if it is. After an error there are none, so that they are
+    /// computed.
+    fn normals(&mut self, node: &'t Node, field: &str, faults: &mut Vec<Fault>) -> bool {
+        let numbers = or_default(node.tuples(field, 3).map(|numbers| numbers.unwrap_or(&[])), &[], faults);
+        let empty = numbers.is_empty() && faults.is_empty();
+        if !empty {
+            self.normals = numbers;
+        }
+        !empty
+    }
+
     /// Sets the diffuse colours, unless the list is empty.
     fn diffuse(&mut self, colours: Colours<'t>) {
         if colours.len() > 0 {
@@ -282,30 +333,29 @@ impl<'t> State<'t> {
         }
     }
 
-    fn material(&mut self, node: &'t Node) -> Result<(), Fault> {
+    fn material(&mut self, node: &'t Node, faults: &mut Vec<Fault>) {
         let (before, default) = (self.materials, State::new(0.0).materials);
-        self.diffuse(Colours::Rgb(list(node, "diffuseColor", 3, &[], &GREY)?));
+        self.diffuse(Colours::Rgb(list(node, "diffuseColor", 3, (&[], &GREY), faults)));
         self.materials = Materials {
-            ambient: list(node, "ambientColor", 3, before.ambient, default.ambient)?,
-            specular: list(node, "specularColor", 3, before.specular, default.specular)?,
-            emissive: list(node, "emissiveColor", 3, before.emissive, default.emissive)?,
-            shininess: list(node, "shininess", 1, before.shininess, default.shininess)?,
-            transparency: list(node, "transparency", 1, before.transparency, default.transparency)?,
+            ambient: list(node, "ambientColor", 3, (before.ambient, default.ambient), faults),
+            specular: list(node, "specularColor", 3, (before.specular, default.specular), faults),
+            emissive: list(node, "emissiveColor", 3, (before.emissive, default.emissive), faults),
+            shininess: list(node, "shininess", 1, (before.shininess, default.shininess), faults),
+            transparency: list(node, "transparency", 1, (before.transparency, default.transparency), faults),
             ..self.materials
         };
-        Ok(())
     }
 
     /// Applies a `VertexProperty`. An empty field leaves the state and its binding unchanged.
-    fn vertex_property(&mut self, node: &'t Node) -> Result<(), Fault> {
+    fn vertex_property(&mut self, node: &'t Node, faults: &mut Vec<Fault>) -> Result<(), Fault> {
         self.positions(node.tuples("vertex", 3)?, 3);
-        if let Some(numbers) = node.tuples("normal", 3)?.filter(|numbers| !numbers.is_empty()) {
-            self.normals = numbers;
-            self.normal_binding = Binding::read(node, "normalBinding", NORMALS)?;
+        if self.normals(node, "normal", faults) {
+            self.normal_binding = or_default(Binding::read(node, "normalBinding", NORMALS), NORMALS, faults);
         }
-        if let Some(colours) = node.numbers("orderedRGBA")?.filter(|numbers| !numbers.is_empty()) {
+        let colours = list(node, "orderedRGBA", 1, (&[], &[]), faults);
+        if !colours.is_empty() {
             self.diffuse(Colours::Rgba(colours));
-            self.material_binding = Binding::read(node, "materialBinding", MATERIALS)?;
+            self.material_binding = or_default(Binding::read(node, "materialBinding", MATERIALS), MATERIALS, faults);
         }
         Ok(())
     }

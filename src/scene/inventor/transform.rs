@@ -41,6 +41,10 @@ impl State<'_> {
         let local = match node.kind {
             NodeType::Translation => DAffine3::from_translation(node.vector("translation", DVec3::ZERO)?),
             NodeType::Rotation => DAffine3::from_quat(node.rotation("rotation")?),
+            // A field that is ignored (`~`) makes the node have no effect, where its default would have one.
+            NodeType::ResetTransform if node.ignores("whatToReset") => return Ok(()),
+            NodeType::Units if node.ignores("units") => return Ok(()),
+            NodeType::RotationXyz if node.ignores("axis") => return Ok(()),
             NodeType::RotationXyz => {
                 let angle = node.number("angle", 0.0)?;
                 DAffine3::from_quat(match node.word("axis")? {

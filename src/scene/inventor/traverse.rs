@@ -6,7 +6,7 @@ use super::parse::MAX_DEPTH;
 use super::state::State;
 use super::transform::{PROJECTION, affine};
 use super::tree::{Node, Tree, Values};
-use crate::scene::text::{Fault, ReadError};
+use crate::scene::text::{Fault, ReadError, place};
 use glam::{DAffine3, DVec3};
 use std::path::Path;
 
@@ -44,10 +44,23 @@ impl InventorReader {
             NodeType::Array => self.array(file, node, state).map_err(|error| error.at(node.line))?,
             NodeType::MultipleCopy => self.copies(file, node, state).map_err(|error| error.at(node.line))?,
             NodeType::Include => self.include(path, node, state).map_err(|error| error.at(node.line))?,
-            _ => self.leaf(file, node, state).map_err(|fault| fault.at(node.line))?,
+            _ => {
+                self.leaf(file, node, state).map_err(|fault| fault.at(node.line))?;
+                self.warn_of_faults(path, node);
+            }
         }
         self.depth -= 1;
         Ok(())
+    }
+
+    /// Turns the errors of a node that are not errors of geometry into warnings.
+    #[inline]
+    fn warn_of_faults(&mut self, path: &Path, node: &Node) {
+        for fault in self.faults.drain(..) {
+            let place = place(path, fault.line.unwrap_or(node.line));
+            self.mesh.warnings.add(&format!("{place}: {}", fault.problem));
+        }
+        self.mesh.not_finite.set_place(|| place(path, node.line));
     }
 
     /// Processes a node without children.
@@ -62,7 +75,10 @@ impl InventorReader {
             | NodeType::ResetTransform
             | NodeType::Units => state.apply_transform(node),
             NodeType::PointLight | NodeType::SpotLight | NodeType::DirectionalLight => self.light(node, state),
-            NodeType::PerspectiveCamera => self.view(node, state),
+            NodeType::PerspectiveCamera => {
+                self.view(node, state);
+                Ok(())
+            }
             NodeType::Cube
             | NodeType::Sphere
             | NodeType::Cone
@@ -82,11 +98,11 @@ impl InventorReader {
                             "give a VertexProperty",
                         ));
                     }
-                    own.set(vertices, file.crease_angle).map_err(|fault| fault.at(vertices.line))?;
+                    own.set(vertices, file.crease_angle, &mut self.faults).map_err(|fault| fault.at(vertices.line))?;
                 }
                 self.shape(node, &own)
             }
-            _ => state.set(node, file.crease_angle),
+            _ => state.set(node, file.crease_angle, &mut self.faults),
         }
     }
 
@@ -103,7 +119,7 @@ impl InventorReader {
     }
 
     /// Traverses the child that `whichChild` selects: an index, -1 for none, -2 for the index that the enclosing switch
-    /// selected, -3 for all.
+    /// selected, or the number of the copy, -3 for all.
     fn switch<'t>(&mut self, file: FileContext<'t, '_>, node: &Node, state: &mut State<'t>) -> Result<(), ReadError> {
         let count = node.children.len();
         let which = match node.integer("whichChild", -1)? {
@@ -124,7 +140,8 @@ impl InventorReader {
         }
     }
 
-    /// Traverses the children of an `Array` once for each of its copies, along one to three axes.
+    /// Traverses the children of an `Array` once for each of its copies, along one to three axes. The number of the copy
+    /// is what a switch with `whichChild -2` inherits.
     fn array<'t>(&mut self, file: FileContext<'t, '_>, node: &Node, state: &mut State<'t>) -> Result<(), ReadError> {
         let axes = [
             ("numElements1", "separation1", DVec3::X),
@@ -146,6 +163,7 @@ impl InventorReader {
         if counts[0] < 1 {
             return Ok(());
         }
+        let mut number = 0;
         for k in 0..counts[2] {
             self.count_work(1)?;
             for j in 0..counts[1] {
@@ -155,6 +173,8 @@ impl InventorReader {
                     let place = start + steps[0] * i + steps[1] * j + steps[2] * k;
                     let mut copy = *state;
                     copy.transform *= DAffine3::from_translation(place);
+                    copy.selected_child = number;
+                    number += 1;
                     self.children(file, node, 0..node.children.len(), &mut copy)?;
                 }
             }
@@ -162,12 +182,13 @@ impl InventorReader {
         Ok(())
     }
 
-    /// Traverses the children of a `MultipleCopy` once for each of its matrices.
+    /// Traverses the children of a `MultipleCopy` once for each of its matrices, the number of which a switch inherits.
     fn copies<'t>(&mut self, file: FileContext<'t, '_>, node: &Node, state: &mut State<'t>) -> Result<(), ReadError> {
         let identity = glam::DMat4::IDENTITY.to_cols_array();
         let matrices = node.tuples("matrix", 16)?.unwrap_or(&identity);
-        for matrix in matrices.as_chunks().0 {
+        for (number, matrix) in matrices.as_chunks().0.iter().enumerate() {
             let mut copy = *state;
+            copy.selected_child = number as i64;
             copy.transform *=
                 affine(matrix).ok_or_else(|| Fault::new(None, PROJECTION, "projections cannot be traced"))?;
             self.children(file, node, 0..node.children.len(), &mut copy)?;

@@ -16,14 +16,30 @@ const FAR: f32 = 10.0;
 pub type DistantLight = (DVec3, DVec3);
 
 impl InventorReader {
-    /// Adds a light, if it is on.
+    /// Adds a light, if it is on. A light with an error in a field is ignored, and the error added to the faults.
+    ///
+    /// # Errors
+    /// The lights exceed the memory limit, or a transform moves the light out of range.
     pub(super) fn light(&mut self, node: &Node, state: &State) -> Result<(), Fault> {
-        if !node.flag("on", true)? {
-            return Ok(());
-        }
-        let colour = node.vector("color", DVec3::ONE)? * node.number("intensity", 1.0)?;
-        if node.kind == NodeType::DirectionalLight {
-            let direction = state.transform.transform_vector3(node.vector("direction", DVec3::NEG_Z)?);
+        let directional = node.kind == NodeType::DirectionalLight;
+        let (name, default) = if directional { ("direction", DVec3::NEG_Z) } else { ("location", DVec3::Z) };
+        let read = || -> Result<Option<(DVec3, DVec3)>, Fault> {
+            let colour = node.vector("color", DVec3::ONE)? * node.number("intensity", 1.0)?;
+            let place = node.vector(name, default)?;
+            let finite = colour.is_finite() && place.is_finite();
+            let problem = || Fault::new(None, "a number of the light is not finite", "");
+            Ok(node.flag("on", true)?.then_some(finite.then_some((place, colour)).ok_or_else(problem)).transpose()?)
+        };
+        let (place, colour) = match read() {
+            Ok(Some(found)) => found,
+            Ok(None) => return Ok(()),
+            Err(fault) => {
+                self.faults.push(Fault { problem: format!("{}: the light is ignored", fault.problem), ..fault });
+                return Ok(());
+            }
+        };
+        if directional {
+            let direction = state.transform.transform_vector3(place);
             self.mesh.charge_repeated(size_of::<DistantLight>() + size_of::<Light>())?;
             self.distant_lights.push((direction, colour));
             return Ok(());
@@ -32,14 +48,20 @@ impl InventorReader {
             self.mesh.warnings.add("spot light: shines in all directions");
         }
         self.mesh.set_transform(state.transform);
-        self.mesh.light(node.vector("location", DVec3::Z)?, colour)
+        self.mesh.light(place, colour)
     }
 
-    /// Sets the scene's camera, if this is the first.
-    pub(super) fn view(&mut self, node: &Node, state: &State) -> Result<(), Fault> {
-        if self.camera.is_some() {
-            return Ok(());
+    /// Sets the scene's camera, if this is the first. A camera with an error is ignored, and the error added to the
+    /// faults.
+    pub(super) fn view(&mut self, node: &Node, state: &State) {
+        if self.camera.is_none()
+            && let Err(fault) = self.first_view(node, state)
+        {
+            self.faults.push(Fault { problem: format!("{}: the camera is ignored", fault.problem), ..fault });
         }
+    }
+
+    fn first_view(&mut self, node: &Node, state: &State) -> Result<(), Fault> {
         let turn = node.rotation("orientation")?;
         let position = state.transform.transform_point3(node.vector("position", DVec3::Z)?);
         let position = (position - self.mesh.offset()).as_vec3();

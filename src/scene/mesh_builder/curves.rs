@@ -14,6 +14,9 @@ impl MeshBuilder {
     /// The geometry exceeds the limits, or a position exceeds single precision.
     pub fn sphere(&mut self, center: DVec3, radius: f64, segments: u32) -> Result<(), Fault> {
         self.new_shape();
+        if !self.keep_if(center.is_finite() && radius.is_finite()) {
+            return Ok(());
+        }
         if radius == 0.0 {
             self.warnings.add("sphere with radius 0 ignored");
             return Ok(());
@@ -31,6 +34,9 @@ impl MeshBuilder {
     /// As [`MeshBuilder::sphere`].
     pub fn cone(&mut self, from: (DVec3, f64), to: (DVec3, f64), segments: u32) -> Result<(), Fault> {
         self.new_shape();
+        if !self.keep_if([from, to].iter().all(|(center, radius)| center.is_finite() && radius.is_finite())) {
+            return Ok(());
+        }
         let axis = to.0 - from.0;
         let (height, radii) = (axis.length(), [from.1.abs(), to.1.abs()]);
         // The condition is also true for NaN.
@@ -49,6 +55,9 @@ impl MeshBuilder {
     /// As [`MeshBuilder::sphere`].
     pub fn ring(&mut self, center: DVec3, normal: DVec3, [inner, outer]: [f64; 2], segments: u32) -> Result<(), Fault> {
         self.new_shape();
+        if !self.keep_if(center.is_finite() && inner.is_finite() && outer.is_finite()) {
+            return Ok(());
+        }
         if outer == inner || unit(normal) == DVec3::ZERO {
             self.warnings.add("ring without area ignored");
             return Ok(());
@@ -64,6 +73,9 @@ impl MeshBuilder {
     /// As [`MeshBuilder::sphere`].
     pub fn torus(&mut self, center: DVec3, axis: DVec3, radius: f64, tube: f64, segments: u32) -> Result<(), Fault> {
         self.new_shape();
+        if !self.keep_if(center.is_finite() && radius.is_finite() && tube.is_finite()) {
+            return Ok(());
+        }
         if tube == 0.0 || unit(axis) == DVec3::ZERO {
             self.warnings.add("torus without tube radius or axis ignored");
             return Ok(());

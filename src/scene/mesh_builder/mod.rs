@@ -6,6 +6,7 @@
 //! of flat faces only consecutive coplanar faces share vertices ([`MeshBuilder::flat_polygon`]).
 
 mod curves;
+mod finite;
 mod limits;
 mod polygons;
 mod revolve;
@@ -17,10 +18,11 @@ use super::polygon::Triangulator;
 use super::text::Fault;
 use super::{Light, Material, Options, Placement, Scene, Triangle};
 use crate::math::Vertex;
+pub use finite::{DROPPED, NotFinite, drop_invalid, is_valid, narrow, narrow_number};
 use foldhash::fast::RandomState;
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 pub use limits::Limits;
-use polygons::has_direction;
+pub use polygons::has_direction;
 use revolve::UnitCircles;
 use shared::Shared;
 use std::collections::HashMap;
@@ -54,6 +56,8 @@ pub struct MeshBuilder {
     corners: Vec<u32>,
     limits: Limits,
     pub warnings: Warnings,
+    /// Faces and surfaces that were dropped, because a coordinate in the file is not finite.
+    pub not_finite: NotFinite,
 }
 
 /// A transform with derived values.
@@ -127,6 +131,7 @@ impl Default for MeshBuilder {
             corners: Vec::new(),
             limits: Limits::default(),
             warnings: Warnings::default(),
+            not_finite: NotFinite::default(),
         }
     }
 }
@@ -328,6 +333,15 @@ impl MeshBuilder {
         self.frame().direction(normal)
     }
 
+    /// Drops and counts a face or surface unless it is `finite`; returns `finite`.
+    #[inline]
+    pub fn keep_if(&mut self, finite: bool) -> bool {
+        if !finite {
+            self.not_finite.add_face();
+        }
+        finite
+    }
+
     /// Adds a triangle; its vertices are counter-clockwise, seen from outside.
     ///
     /// # Errors
@@ -361,12 +375,13 @@ impl MeshBuilder {
     /// The scene with the mesh, its materials, lights and warnings.
     pub fn finish(self) -> Scene {
         let placement = Placement { offset: self.offset(), exponent: 0 };
-        let MeshBuilder { mut vertices, mut triangles, materials, lights, warnings, shared, .. } = self;
+        let MeshBuilder { mut vertices, mut triangles, materials, lights, warnings, not_finite, shared, .. } = self;
         // This is released before the vectors are copied to vectors of their exact size.
         drop(shared);
         vertices.shrink_to_fit();
         triangles.shrink_to_fit();
-        Scene { vertices, triangles, materials, lights, warnings: warnings.lines(), placement, ..Scene::default() }
+        let warnings = not_finite.warning().into_iter().chain(warnings.lines()).collect();
+        Scene { vertices, triangles, materials, lights, warnings, placement, ..Scene::default() }
     }
 }
 

@@ -11,7 +11,8 @@ const FEW: usize = 4;
 
 impl MeshBuilder {
     /// Adds a polygon; its corners are counter-clockwise, seen from outside. `normals` has a normal per corner, or is
-    /// empty for flat shading. A polygon with fewer than three corners is ignored, with a warning.
+    /// empty for flat shading. A polygon with fewer than three corners is ignored, with a warning; one with a corner that
+    /// is not finite is dropped and counted.
     ///
     /// # Errors
     /// A corner exceeds single precision, or the geometry exceeds the limits.
@@ -50,7 +51,7 @@ impl MeshBuilder {
         holes: &[u32],
     ) -> Result<(), Fault> {
         let outer = holes.first().map_or(corners.len(), |&first| first as usize);
-        if self.is_too_small(outer) {
+        if self.is_too_small(outer) || !self.keep_if(corners.iter().all(|corner| corner.is_finite())) {
             return Ok(());
         }
         // It is computed lazily, because triangles with normals do not need it.
@@ -67,7 +68,7 @@ impl MeshBuilder {
             let given = normals.get(i).copied().unwrap_or(DVec3::ZERO);
             let has_length = has_direction(given);
             if !normals.is_empty() && !has_length {
-                self.warnings.add("normal of length zero: replaced by the polygon's");
+                self.warnings.add("normal that is zero or not finite: replaced by the polygon's");
             }
             vertices.push(match indices {
                 _ if !has_length => {
@@ -91,7 +92,7 @@ impl MeshBuilder {
     /// # Errors
     /// As [`MeshBuilder::polygon`].
     pub fn flat_polygon(&mut self, corners: &[DVec3]) -> Result<(), Fault> {
-        if self.is_too_small(corners.len()) {
+        if self.is_too_small(corners.len()) || !self.keep_if(corners.iter().all(|corner| corner.is_finite())) {
             return Ok(());
         }
         let flat = newell(corners);

@@ -159,7 +159,7 @@ fn corners_with_equal_normals_share_vertices_within_a_shape() {
         b.polygon(&[o, x, y], &[]).unwrap();
     });
     assert_eq!((scene.vertices.len(), scene.triangles.len()), (4 + 3 + 3, 5));
-    assert_eq!(scene.warnings, ["normal of length zero: replaced by the polygon's"]);
+    assert_eq!(scene.warnings, ["normal that is zero or not finite: replaced by the polygon's"]);
 }
 
 #[test]

@@ -27,9 +27,10 @@ const RGB: DMat3 = DMat3::from_cols_array_2d(&[
 const LUMINANCE: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);
 
 impl Chromaticity {
-    /// The chromaticity with these coordinates, if they are valid.
+    /// The chromaticity with these coordinates, if they are valid. Both may be zero, which is a saturated blue: the third
+    /// coordinate is then 1.
     pub fn new(x: f64, y: f64) -> Option<Chromaticity> {
-        (x >= 0.0 && y >= 0.0 && x + y > 0.0 && x + y <= 1.0 + 1e-6).then_some(Chromaticity { x, y })
+        (x >= 0.0 && y >= 0.0 && x + y <= 1.0 + 1e-6).then_some(Chromaticity { x, y })
     }
 
     fn of_xyz(xyz: DVec3) -> Option<Chromaticity> {
@@ -144,5 +145,8 @@ mod tests {
         assert_eq!(Chromaticity::mix(&[(3.0, red)]).map(|c| (c.x * 1e6).round()), Some(640_000.0));
         assert_eq!(Chromaticity::mix(&[(0.0, red)]), None);
         assert_eq!(Chromaticity::new(0.8, 0.3), None);
+        assert_eq!(Chromaticity::new(f64::NAN, 0.3), None);
+        let blue = Chromaticity::new(0.0, 0.0).unwrap().rgb();
+        assert!(blue.is_finite() && blue.z > 5.0 && blue.x == 0.0 && blue.y < 1.0, "{blue}");
     }
 }

@@ -109,6 +109,18 @@ impl<T: Clone + Default> Contexts<T> {
         Ok(place)
     }
 
+    /// Makes the context of this name current, which is created with `value` unless it exists.
+    pub fn select_or(&mut self, name: &[u8], value: T) -> Result<(), Fault> {
+        match self.names.find(name) {
+            Some(place) => self.current = place,
+            None => {
+                let place = self.place_of_new(name)?;
+                self.start(place, value);
+            }
+        }
+        Ok(())
+    }
+
     pub fn current(&self) -> &T {
         &self.all[self.current]
     }

@@ -1,11 +1,11 @@
 //! Reads the sequence of entities: contexts, materials, transforms, includes.
 
 use super::colour::{Chromaticity, SAMPLES};
-use super::materials::ColouredAmount;
-use super::transform::{InstanceTransforms, number_of};
+use super::materials::{ColouredAmount, MaterialContext};
+use super::transform::{InstanceTransforms, any_number_of, number_of};
 use super::{MAX_DEPTH, MgfReader};
 use crate::scene::mesh_builder::unit;
-use crate::scene::text::{Fault, ReadError, Tokenizer, quote_bytes};
+use crate::scene::text::{Fault, ReadError, Tokenizer, place, quote_bytes};
 use glam::DVec3;
 use std::path::Path;
 
@@ -20,14 +20,14 @@ fn arguments<'a>(tokens: &mut Tokenizer<'a>, found: &mut Vec<&'a [u8]>) {
     }
 }
 
-/// Parses exactly `N` numbers.
-fn numbers<const N: usize>(arguments: &[&[u8]]) -> Result<[f64; N], Fault> {
+/// Parses exactly `N` numbers with `one`.
+fn numbers<const N: usize>(arguments: &[&[u8]], one: fn(&[u8]) -> Result<f64, Fault>) -> Result<[f64; N], Fault> {
     let tokens: [&[u8]; N] = arguments.try_into().map_err(|_| {
         Fault::new(None, format!("there are {} arguments, but {N} numbers are needed", arguments.len()), "")
     })?;
     let mut values = [0.0; N];
     for (value, word) in values.iter_mut().zip(tokens) {
-        *value = number_of(word)?;
+        *value = one(word)?;
     }
     Ok(values)
 }
@@ -68,10 +68,15 @@ impl MgfReader {
                 (b"xf", arguments) => self.transformed(path, tokens, arguments, line)?,
                 (b"i", arguments) => self.include(path, arguments).map_err(|error| error.at(line))?,
                 (entity, arguments) => {
-                    self.entity(entity, arguments).map_err(|fault| {
+                    if let Err(fault) = self.entity(entity, arguments) {
                         let problem = format!("{}: {}", String::from_utf8_lossy(entity), fault.problem);
-                        Fault { problem, ..fault }.at(line)
-                    })?;
+                        if !self.repair(entity, arguments)? {
+                            return Err(Fault { problem, ..fault }.at(line).into());
+                        }
+                        let place = place(path, line);
+                        self.mesh.warnings.add(&format!("{place}: {problem}: the default is used"));
+                    }
+                    self.mesh.not_finite.set_place(|| place(path, line));
                 }
             }
         }
@@ -149,11 +154,31 @@ impl MgfReader {
         Ok(())
     }
 
+    /// Applies the default of an entity that has an error, if it is not geometry. Returns false if it is.
+    ///
+    /// # Errors
+    /// The names take too much memory.
+    #[cold]
+    fn repair(&mut self, entity: &[u8], arguments: &[&[u8]]) -> Result<bool, Fault> {
+        match (entity, arguments) {
+            (b"n", _) => self.vertices.current_mut().normal = glam::Vec3::ZERO,
+            (b"c", [name, ..]) => self.colours.select_or(name, Chromaticity::default())?,
+            (b"cxy" | b"cspec" | b"cct" | b"cmix", _) => *self.colours.current_mut() = Chromaticity::default(),
+            (b"m", [name, ..]) => {
+                self.materials.select_or(name, MaterialContext::grey())?;
+                self.material_set = false;
+            }
+            (b"rd" | b"td" | b"ed" | b"rs" | b"ts", _) => {}
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+
     fn entity(&mut self, entity: &[u8], arguments: &[&[u8]]) -> Result<(), Fault> {
         match entity {
             b"v" => self.vertices.select(arguments)?,
-            b"p" => self.vertices.current_mut().position = DVec3::from(numbers(arguments)?),
-            b"n" => self.vertices.current_mut().normal = unit(DVec3::from(numbers(arguments)?)).as_vec3(),
+            b"p" => self.vertices.current_mut().position = DVec3::from(numbers(arguments, any_number_of)?),
+            b"n" => self.vertices.current_mut().normal = unit(DVec3::from(numbers(arguments, number_of)?)).as_vec3(),
             b"c" => self.colours.select(arguments)?,
             b"cxy" | b"cspec" | b"cct" | b"cmix" => self.colour(entity, arguments)?,
             b"m" => {
@@ -181,11 +206,11 @@ impl MgfReader {
         }
         let found = match entity {
             b"cxy" => {
-                let [x, y] = numbers(arguments)?;
+                let [x, y] = numbers(arguments, number_of)?;
                 Chromaticity::new(x, y)
             }
             b"cct" => {
-                let [kelvin] = numbers(arguments)?;
+                let [kelvin] = numbers(arguments, number_of)?;
                 Chromaticity::black_body(kelvin)
             }
             b"cspec" => {
@@ -210,8 +235,8 @@ impl MgfReader {
 
     fn material(&mut self, entity: &[u8], arguments: &[&[u8]]) -> Result<(), Fault> {
         let (amount, roughness) = match entity {
-            b"rs" | b"ts" => numbers(arguments).map(|[amount, roughness]| (amount, roughness))?,
-            _ => numbers(arguments).map(|[amount]| (amount, 0.0))?,
+            b"rs" | b"ts" => numbers(arguments, number_of).map(|[amount, roughness]| (amount, roughness))?,
+            _ => numbers(arguments, number_of).map(|[amount]| (amount, 0.0))?,
         };
         if amount < 0.0 || roughness < 0.0 {
             return Err(Fault::new(None, "the amount of light or the roughness is negative", "give 0 or more"));

@@ -39,6 +39,12 @@ pub struct MaterialContext {
 }
 
 impl MaterialContext {
+    /// The material of a name that is not defined.
+    pub fn grey() -> MaterialContext {
+        let diffuse = ColouredAmount { amount: 0.5, colour: Chromaticity::default() };
+        MaterialContext { diffuse, ..MaterialContext::default() }
+    }
+
     /// Converts the context to a Phong material.
     pub fn material(&self) -> Material {
         let most = DVec3::ONE;

@@ -24,7 +24,7 @@ mod shapes;
 mod transform;
 
 use super::mesh_builder::MeshBuilder;
-use super::text::{Fault, Includes, ReadError, Syntax, Tokenizer};
+use super::text::{Fault, Includes, ReadError, Syntax, Tokenizer, refuse_zeros};
 use super::{Options, Scene};
 use crate::error::{Error, Result};
 use colour::Chromaticity;
@@ -122,6 +122,7 @@ impl MgfReader {
 
     /// Reads one file.
     fn file(&mut self, path: &Path, bytes: &[u8]) -> Result<()> {
+        refuse_zeros(bytes).map_err(|fault| fault.of(path))?;
         let mut tokens = Tokenizer::new(bytes, &SYNTAX);
         match self.block(path, &mut tokens, None) {
             Ok(()) => Ok(()),

@@ -1,6 +1,6 @@
 //! Converts shapes to triangles.
 
-use super::transform::number_of;
+use super::transform::any_number_of;
 use super::{MgfReader, VertexContext};
 use crate::scene::polygon::newell;
 use crate::scene::text::Fault;
@@ -42,13 +42,13 @@ impl MgfReader {
             }
             (b"sph", &[center, radius]) => {
                 let center = self.vertices.find(center)?.position;
-                self.mesh.sphere(center, number_of(radius)?, self.segments)?;
+                self.mesh.sphere(center, any_number_of(radius)?, self.segments)?;
             }
             (b"cyl", &[from, radius, to]) => self.cone([from, radius, to, radius])?,
             (b"cone", &[from, radius, to, radius_there]) => self.cone([from, radius, to, radius_there])?,
             (b"ring", &[center, inner, outer]) => {
                 let VertexContext { position, normal } = *self.vertices.find(center)?;
-                let radii = [number_of(inner)?, number_of(outer)?];
+                let radii = [any_number_of(inner)?, any_number_of(outer)?];
                 if radii[0] < 0.0 || radii[1] < radii[0] {
                     return Err(Fault::new(None, "the radii are not 0 <= inner < outer", "put the inner one first"));
                 }
@@ -57,8 +57,9 @@ impl MgfReader {
             (b"torus", &[center, inner, outer]) => {
                 let VertexContext { position, normal } = *self.vertices.find(center)?;
                 // Negative radii mean that normals point inwards.
-                let (inner, outer) = (number_of(inner)?, number_of(outer)?);
-                if !(0.0 <= inner && inner < outer || outer < inner && inner <= 0.0) {
+                let (inner, outer) = (any_number_of(inner)?, any_number_of(outer)?);
+                let finite = inner.is_finite() && outer.is_finite();
+                if finite && !(0.0 <= inner && inner < outer || outer < inner && inner <= 0.0) {
                     let hint = "put the inner one first; both are negative where the normals point inward";
                     return Err(Fault::new(None, "the radii are not 0 <= inner < outer", hint));
                 }
@@ -70,7 +71,7 @@ impl MgfReader {
                     self.segments,
                 )?;
             }
-            (b"prism", [names @ .., length]) => self.prism(names, number_of(length)?)?,
+            (b"prism", [names @ .., length]) => self.prism(names, any_number_of(length)?)?,
             _ => return Err(Fault::new(None, format!("{} arguments are the wrong number", arguments.len()), "")),
         }
         let emitted = self.materials.current().emitted;
@@ -104,7 +105,7 @@ impl MgfReader {
 
     fn cone(&mut self, [from, radius, to, radius_there]: [&[u8]; 4]) -> Result<(), Fault> {
         let [from, to] = [self.vertices.find(from)?.position, self.vertices.find(to)?.position];
-        let radii = [number_of(radius)?, number_of(radius_there)?];
+        let radii = [any_number_of(radius)?, any_number_of(radius_there)?];
         if radii[0] * radii[1] < 0.0 {
             return Err(Fault::new(None, "one radius is positive and one is negative", "give both the same sign"));
         }
@@ -117,6 +118,9 @@ impl MgfReader {
         self.mesh.new_shape();
         let points = self.points(names)?;
         let near: Vec<DVec3> = points.iter().map(|point| point.position).collect();
+        if !self.mesh.keep_if(length.is_finite() && near.iter().all(|corner| corner.is_finite())) {
+            return Ok(());
+        }
         let normal = newell(&near).normalize_or_zero();
         if near.len() < 3 || normal == DVec3::ZERO || length == 0.0 {
             self.mesh.warnings.add("prism without volume ignored");

@@ -1,7 +1,6 @@
 //! Transforms with arrays, such as `-t 1 0 0 -a 5 -rz 30 -i 1 -s 2`.
 
-use crate::scene::text::number;
-use crate::scene::text::{Fault, quote_bytes};
+use crate::scene::text::{Fault, number, odd, quote_bytes};
 use glam::{DAffine3, DMat3, DVec3};
 
 /// The largest number of instances of one transform.
@@ -9,9 +8,18 @@ const MAX_COPIES: usize = 100_000;
 
 /// Parses an argument as a finite number.
 pub fn number_of(word: &[u8]) -> Result<f64, Fault> {
-    match number::double(word) {
-        Some((value, length)) if length == word.len() && value.is_finite() => Ok(value),
+    match any_number_of(word) {
+        Ok(value) if value.is_finite() => Ok(value),
         _ => Err(Fault::new(None, format!("{} is not a finite number", quote_bytes(word)), "")),
+    }
+}
+
+/// Parses an argument as a number that need not be finite.
+pub fn any_number_of(word: &[u8]) -> Result<f64, Fault> {
+    match number::double(word) {
+        Some((value, length)) if length == word.len() => Ok(value),
+        _ => odd::value(word)
+            .ok_or_else(|| Fault::new(None, format!("{} is not a finite number", quote_bytes(word)), "")),
     }
 }
 

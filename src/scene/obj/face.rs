@@ -1,7 +1,8 @@
 //! Converts faces to vertices and triangles.
 
 use super::Fault;
-use super::lines::{Lines, printable};
+use super::lines::Lines;
+use super::pending::{PendingFace, Problems};
 use crate::scene::Triangle;
 use crate::scene::lamps;
 use crate::scene::mesh_builder::Limits;
@@ -9,6 +10,7 @@ use crate::scene::polygon::{Triangulator, newell};
 use foldhash::fast::RandomState;
 use glam::{DVec3, Vec3};
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// Corners with equal keys share a vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -16,6 +18,13 @@ pub struct VertexKey {
     /// Index into [`Faces::positions`].
     pub position: u32,
     normal: Normal,
+}
+
+/// The indices of a corner, counted from 0; the normal's index may be out of range.
+#[derive(Clone, Copy)]
+pub struct Corner {
+    pub position: u32,
+    pub normal: Option<u32>,
 }
 
 impl VertexKey {
@@ -73,6 +82,8 @@ const PER_VERTEX: usize = 112;
 const PER_CROWDED: usize = 64;
 const PER_TRIANGLE: usize = 32;
 const PER_CORNER: usize = 112;
+const PER_PENDING: usize = 36;
+const PER_INDEX: usize = 12;
 
 /// The memory of a face is checked after this number of corners.
 const MANY_CORNERS: usize = 4096;
@@ -107,6 +118,9 @@ pub struct Faces {
     pub limits: Limits,
     /// Number of emissive triangles.
     pub emissive: usize,
+    /// Faces with vertices that follow them in the file.
+    pub(super) pending: Vec<PendingFace>,
+    pub(super) problems: Problems,
 }
 
 impl Default for Faces {
@@ -128,6 +142,8 @@ impl Default for Faces {
             triangulator: Triangulator::default(),
             limits: Limits::default(),
             emissive: 0,
+            pending: Vec::new(),
+            problems: Problems::default(),
         }
     }
 }
@@ -143,41 +159,86 @@ impl Faces {
         self.smoothing = smoothing;
     }
 
-    /// Reads the corners of a face and adds its triangles.
+    /// Reads the corners of a face and adds its triangles. A face with a vertex that is not finite is dropped.
     pub fn face(&mut self, lines: &mut Lines, material: u32) -> Result<(), Fault> {
         self.corners.clear();
-        self.first.resize(self.positions.len(), NONE);
+        self.problems.begin_face();
+        if self.first.len() < self.positions.len() {
+            self.first.resize(self.positions.len(), NONE);
+        }
         while let Some(word) = lines.word() {
-            let (position, normal) = self.corner(word, lines.line())?;
-            let normal = match (normal, self.smoothing) {
-                (Some(index), _) => Normal::Given(index),
-                (None, Smoothing::Group(group)) => Normal::Smooth(group),
-                (None, Smoothing::Flat) => Normal::Flat(self.faces),
-            };
-            let vertex = self.vertex(VertexKey { position, normal });
-            self.corners.push(vertex);
+            match self.plain_corner(word) {
+                Some(corner) => self.add_corner(corner, lines.line())?,
+                None => self.odd_corners(word, lines)?,
+            }
             if self.corners.len().is_multiple_of(MANY_CORNERS) {
                 self.check_memory(lines.line())?;
             }
         }
         self.faces = self.faces.wrapping_add(1);
+        if self.problems.drops_face(self.corners.len()) {
+            return self.check_memory(lines.line());
+        }
+        let begin = self.triangles.len();
         let add = |a: u32, b: u32, c: u32| Triangle { vertices: [a, b, c], material };
         match *self.corners.as_slice() {
             [] | [_] | [_, _] => self.small += 1,
             [a, b, c] => self.triangles.push(add(a, b, c)),
-            _ => {
-                let (keys, positions) = (&self.keys, &self.positions);
-                let point = |&v: &u32| positions[keys[v as usize].position as usize].as_dvec3();
-                self.points.clear();
-                self.points.extend(self.corners.iter().map(point));
-                let normal = newell(&self.points);
-                let corner = |i: u32| self.corners[i as usize];
-                for &[a, b, c] in self.triangulator.triangles(&self.points, &[], normal) {
-                    self.triangles.push(add(corner(a), corner(b), corner(c)));
+            [first, ref rest @ ..] => {
+                self.triangles.extend(rest.windows(2).map(|pair| add(first, pair[0], pair[1])));
+                if !self.problems.is_forward() {
+                    self.triangulate(begin..self.triangles.len());
                 }
             }
         }
+        if self.problems.is_forward() && self.triangles.len() > begin {
+            let triangles = begin as u32..self.triangles.len() as u32;
+            self.pending.push(PendingFace { triangles, line: lines.line() as u32 });
+        }
         self.check_memory(lines.line())
+    }
+
+    /// Adds a corner to the current face.
+    #[inline]
+    pub(super) fn add_corner(&mut self, Corner { position, normal }: Corner, line: usize) -> Result<(), Fault> {
+        if self.problems.has_invalid && !self.is_usable(position, line)? {
+            return Ok(());
+        }
+        let normal = match (normal, self.smoothing) {
+            (Some(index), _) => Normal::Given(index),
+            (None, Smoothing::Group(group)) => Normal::Smooth(group),
+            (None, Smoothing::Flat) => Normal::Flat(self.faces),
+        };
+        let vertex = self.vertex(VertexKey { position, normal });
+        self.corners.push(vertex);
+        Ok(())
+    }
+
+    /// The position of a vertex.
+    pub(super) fn position(&self, vertex: u32) -> Option<Vec3> {
+        self.positions.get(self.keys[vertex as usize].position as usize).copied()
+    }
+
+    /// Enlarges the table of positions for a position that follows in the file.
+    pub(super) fn make_room(&mut self, position: usize) {
+        if self.first.len() <= position {
+            self.first.resize(position + 1, NONE);
+        }
+    }
+
+    /// Replaces the triangles of a fan by those of [`Triangulator::triangles`].
+    pub(super) fn triangulate(&mut self, fan: Range<usize>) {
+        let Faces { keys, positions, triangles, corners, points, triangulator, .. } = self;
+        let fan = &mut triangles[fan];
+        corners.clear();
+        corners.extend(&fan[0].vertices[..2]);
+        corners.extend(fan.iter().map(|triangle| triangle.vertices[2]));
+        points.clear();
+        points.extend(corners.iter().map(|&v| positions[keys[v as usize].position as usize].as_dvec3()));
+        let found = triangulator.triangles(points, &[], newell(points));
+        for (triangle, found) in fan.iter_mut().zip(found) {
+            triangle.vertices = found.map(|i| corners[i as usize]);
+        }
     }
 
     /// Checks the memory of all vertices and triangles against the limit.
@@ -189,7 +250,9 @@ impl Faces {
             + self.crowded.len() * PER_CROWDED
             + self.triangles.len() * PER_TRIANGLE
             + self.emissive * lamps::BYTES
-            + self.corners.len() * PER_CORNER;
+            + self.corners.len() * PER_CORNER
+            + self.pending.len() * PER_PENDING
+            + self.first.len().saturating_sub(self.positions.len()) * PER_INDEX;
         let hint = "the file has many faces with few vertices: convert it to another format, such as binary PLY";
         self.limits.check_temporary(bytes).map_err(|fault| Fault::new(line, fault.problem, hint))
     }
@@ -219,55 +282,4 @@ impl Faces {
         self.next.push(std::mem::replace(&mut self.first[key.position as usize], index));
         index
     }
-
-    /// Parses a corner: `position`, `position/texture`, `position//normal` or `position/texture/normal`. Returns the
-    /// indices of position and normal, counted from 0.
-    #[inline]
-    fn corner(&self, word: &[u8], line: usize) -> Result<(u32, Option<u32>), Fault> {
-        let broken = || {
-            let problem = format!("`{}` is not a corner of a face", printable(word));
-            Fault::new(line, problem, "write v, v/vt, v//vn or v/vt/vn")
-        };
-        let (position, rest) = index(word).ok_or_else(broken)?;
-        let position = resolve(position, self.positions.len(), "vertex", line)?;
-        let Some(rest) = rest.strip_prefix(b"/") else {
-            return if rest.is_empty() { Ok((position, None)) } else { Err(broken()) };
-        };
-        // The index of the texture coordinate is checked and ignored.
-        let rest = if rest.starts_with(b"/") || rest.is_empty() { rest } else { index(rest).ok_or_else(broken)?.1 };
-        match rest.strip_prefix(b"/") {
-            None if rest.is_empty() => Ok((position, None)),
-            Some(b"") => Ok((position, None)),
-            Some(rest) => match index(rest) {
-                Some((normal, b"")) => Ok((position, Some(resolve(normal, self.normals.len(), "normal", line)?))),
-                _ => Err(broken()),
-            },
-            None => Err(broken()),
-        }
-    }
-}
-
-/// Parses an integer at the start; also returns the rest.
-#[inline]
-fn index(bytes: &[u8]) -> Option<(i64, &[u8])> {
-    let negative = bytes.first() == Some(&b'-');
-    let digits = &bytes[usize::from(negative)..];
-    let length = digits.iter().take_while(|b| b.is_ascii_digit()).count();
-    if !(1..=18).contains(&length) {
-        return None;
-    }
-    let value = digits[..length].iter().fold(0i64, |value, b| value * 10 + i64::from(b - b'0'));
-    Some((if negative { -value } else { value }, &digits[length..]))
-}
-
-/// Converts an index, which counts from 1 or backwards from -1, to one that counts from 0. `element` is its name for
-/// messages.
-#[inline]
-fn resolve(given: i64, count: usize, element: &str, line: usize) -> Result<u32, Fault> {
-    let index = if given < 0 { given + count as i64 } else { given - 1 };
-    if (0..count as i64).contains(&index) {
-        return Ok(index as u32);
-    }
-    let problem = format!("a face uses {element} {given}, but {count} are defined before it");
-    Err(Fault::new(line, problem, "indices count from 1, or backwards from -1"))
 }

@@ -3,11 +3,11 @@
 use super::lines::{Lines, printable, without_comment};
 use super::{Fault, NAMES, NamedMaterial, ObjReader, mtl};
 use crate::error::{Error, Result};
-use crate::scene::text::SceneFolders;
+use crate::scene::text::{SceneFolders, place, refuse_zeros};
 use crate::scene::{Material, read_text, sources};
 use glam::Vec3;
 use std::collections::BTreeSet;
-use std::path::{Component, Path};
+use std::path::{Path, PathBuf};
 
 /// The largest number of names of libraries, each of which is searched.
 const MAX_LIBRARIES: usize = 10_000;
@@ -101,7 +101,7 @@ impl ObjReader<'_> {
         }
         let folder = self.path.parent().unwrap_or(Path::new(""));
         let plain = without_comment(&text);
-        if let Some(name) = [&text, plain].into_iter().find(|name| folder.join(file_name(name)).is_file()) {
+        if let Some(name) = [&text, plain].into_iter().find(|name| find(folder, name).is_some()) {
             return self.library(name, line);
         }
         for name in plain.split(u8::is_ascii_whitespace).filter(|name| !name.is_empty()) {
@@ -126,27 +126,40 @@ impl ObjReader<'_> {
 
     /// Reads the library of this name, if it exists.
     fn library(&mut self, name: &[u8], line: usize) -> Result<()> {
-        let path = self.path.parent().unwrap_or(Path::new("")).join(file_name(name));
-        if !self.options.outside {
-            let leaves = file_name(name).components().any(|c| !matches!(c, Component::Normal(_) | Component::CurDir));
-            if leaves || !self.folders.get_or_insert_with(|| SceneFolders::of(self.path)).contain(&path) {
-                let problem = format!("the library {} lies outside of the scene's folder", printable(name));
-                return Err(Error::file(self.path, Some(line), problem, "allow it with the option outside=yes"));
-            }
-        }
-        if !path.is_file() {
-            sources::absent(&path);
-            let name = printable(name);
-            self.warnings.add(&format!("material library {name} does not exist: its materials are neutral grey"));
+        let folder = self.path.parent().unwrap_or(Path::new(""));
+        let place = place(self.path, line);
+        let Some(path) = find(folder, name) else {
+            sources::absent(&folder.join(file_name(name)));
+            let warning =
+                format!("{place}: material library {} does not exist: its materials are neutral grey", printable(name));
+            self.warnings.add(&warning);
             return Ok(());
+        };
+        if !self.options.outside && !self.folders.get_or_insert_with(|| SceneFolders::of(self.path)).contain(&path) {
+            let problem = format!("the library {} lies outside of the scene's folder", printable(name));
+            return Err(Error::file(self.path, Some(line), problem, "allow it with the option outside=yes"));
         }
         // A library is read once.
         if !self.libraries.insert(path.canonicalize().unwrap_or_else(|_| path.clone())) {
             return Ok(());
         }
-        let bytes = read_text(&path)?;
+        let text = read_text(&path).and_then(|bytes| match refuse_zeros(&bytes) {
+            Ok(()) => Ok(bytes),
+            Err(fault) => Err(fault.of(&path)),
+        });
+        let bytes = match text {
+            Ok(bytes) => bytes,
+            Err(error) => {
+                let name = printable(name);
+                self.warnings.add(&format!("{place}: material library {name} cannot be read, it is ignored: {error}"));
+                return Ok(());
+            }
+        };
         self.faces.read(bytes.len());
-        let library = mtl::parse(&bytes).map_err(|fault| fault.of(&path))?;
+        let library = mtl::parse(&bytes, |fault: Fault| {
+            let place = self::place(&path, fault.line);
+            self.warnings.add(&format!("{place}: {}: the line is ignored", fault.problem));
+        });
         self.textures |= library.textures;
         for (name, material, emission) in library.materials {
             self.define(name, material, emission);
@@ -184,6 +197,17 @@ impl ObjReader<'_> {
         let names = if names.is_empty() { "none has a name".into() } else { format!("there are {}", names.join(", ")) };
         Some(format!("lamp={lamp}: there is no such material, {names}"))
     }
+}
+
+/// The path of the library of this name, if it exists; backslashes may separate folders.
+fn find(folder: &Path, name: &[u8]) -> Option<PathBuf> {
+    let path = folder.join(file_name(name));
+    if path.is_file() {
+        return Some(path);
+    }
+    let slashes: Vec<u8> = name.iter().map(|&b| if b == b'\\' { b'/' } else { b }).collect();
+    let path = folder.join(file_name(&slashes));
+    (slashes != name && path.is_file()).then_some(path)
 }
 
 /// Converts a name in the file to a path; any encoding is possible.

@@ -1,8 +1,9 @@
 //! Splits OBJ and MTL files into lines and words.
 
 use super::Fault;
+use crate::scene::mesh_builder::{is_valid, narrow};
 use crate::scene::placement::MAX_COORDINATE;
-use crate::scene::text::number;
+use crate::scene::text::{number, odd};
 use glam::{DVec3, Vec3};
 use std::borrow::Cow;
 
@@ -15,17 +16,24 @@ pub struct Lines<'a> {
     bytes: &'a [u8],
     at: usize,
     line: usize,
+    /// The first line with a number in an unusual notation, such as commas between numbers.
+    pub unusual: Option<usize>,
 }
 
 impl<'a> Lines<'a> {
     /// A reader at the start of the text.
     pub fn new(bytes: &'a [u8]) -> Lines<'a> {
-        Lines { bytes, at: 0, line: 1 }
+        Lines { bytes, at: 0, line: 1, unusual: None }
     }
 
     /// The current line, counted from 1.
     pub fn line(&self) -> usize {
         self.line
+    }
+
+    /// Number of bytes that have not been read.
+    pub fn left(&self) -> usize {
+        self.bytes.len() - self.at
     }
 
     /// Reads the first word of the next line that is neither empty nor a comment.
@@ -145,20 +153,33 @@ impl<'a> Lines<'a> {
         word.and_then(number::double).map(|(value, _)| value).ok_or_else(|| self.no_number(word, context))
     }
 
-    /// Reads a number that is followed by a backslash; other words are errors.
+    /// Reads a number that is followed by a backslash, or in an unusual notation; other words are errors.
     #[cold]
     fn other_float(&mut self, context: &str) -> Result<f32, Fault> {
+        let line = self.line;
         let word = self.word();
-        word.and_then(number::float).map(|(value, _)| value).ok_or_else(|| self.no_number(word, context))
+        let value = word.and_then(|word| odd::value(word.strip_suffix(b",").unwrap_or(word)));
+        match value {
+            Some(value) => {
+                if value.is_finite() && word.and_then(number::double).is_none() {
+                    self.unusual.get_or_insert(line);
+                }
+                Ok(value as f32)
+            }
+            None => Err(self.no_number(word, context)),
+        }
     }
 
     #[cold]
     fn no_number(&self, word: Option<&[u8]>, context: &str) -> Fault {
-        let problem = match word {
-            Some(word) => format!("{context}: `{}` is not a number", printable(word)),
-            None => format!("{context} has too few numbers"),
+        let (problem, hint) = match word {
+            Some(word) if word.contains(&b',') => {
+                (format!("{context}: `{}` is not a number", printable(word)), "write decimals with a point")
+            }
+            Some(word) => (format!("{context}: `{}` is not a number", printable(word)), "three numbers are needed"),
+            None => (format!("{context} has too few numbers"), "three numbers are needed"),
         };
-        Fault::new(self.line, problem, "three numbers are needed")
+        Fault::new(self.line, problem, hint)
     }
 
     #[inline]
@@ -166,32 +187,75 @@ impl<'a> Lines<'a> {
         Ok(Vec3::new(self.float(context)?, self.float(context)?, self.float(context)?))
     }
 
-    /// Reads a position and subtracts `offset`, in double precision unless it is zero.
+    /// Reads three numbers in unusual notations: with commas between them, with Fortran's exponents, or not finite.
+    #[cold]
+    fn odd_three(&mut self, context: &str) -> Result<DVec3, Fault> {
+        let line = self.line;
+        let mut words: Vec<&[u8]> = Vec::new();
+        while let Some(word) = self.word() {
+            words.push(word);
+            if words.len() == MANY_WORDS {
+                break;
+            }
+        }
+        // In a single word commas can only separate numbers; in others they may be decimal commas.
+        let mut pieces: Vec<&[u8]> = match words.as_slice() {
+            [word] => word.split(|&b| b == b',').collect(),
+            words => {
+                let without = |word: &&'a [u8]| word.strip_suffix(b",").unwrap_or(word);
+                words.iter().map(without).map(|word| word.strip_prefix(b",").unwrap_or(word)).collect()
+            }
+        };
+        pieces.retain(|piece| !piece.is_empty());
+        let mut found = [0.0; 3];
+        for (i, number) in found.iter_mut().enumerate() {
+            let piece = pieces.get(i).copied();
+            *number = piece.and_then(odd::value).ok_or_else(|| Fault { line, ..self.no_number(piece, context) })?;
+        }
+        let usual = |word: &&[u8]| odd::value(word).is_some_and(|value| !value.is_finite()) || is_number(word);
+        if !words.iter().take(3).all(usual) {
+            self.unusual.get_or_insert(line);
+        }
+        Ok(DVec3::from(found))
+    }
+
+    /// Reads a position and subtracts `offset`, in double precision unless it is zero. A position that is not finite, or
+    /// beyond the largest coordinate, is not valid, see [`is_valid`].
     #[inline]
     pub fn position(&mut self, offset: DVec3) -> Result<Vec3, Fault> {
-        const CONTEXT: &str = "a vertex";
+        let start = self.clone();
         if offset == DVec3::ZERO {
-            let v = self.three(CONTEXT)?;
-            return if v.abs().cmple(LARGEST.as_vec3()).all() { Ok(v) } else { Err(self.too_far(v)) };
+            match self.three(VERTEX) {
+                Ok(position) if is_valid(position) => return Ok(position),
+                _ => {}
+            }
+        } else if let [Ok(x), Ok(y), Ok(z)] = [self.double(VERTEX), self.double(VERTEX), self.double(VERTEX)] {
+            let v = DVec3::new(x, y, z);
+            if v.abs().cmple(LARGEST).all() {
+                return Ok((v - offset).as_vec3());
+            }
         }
-        let v = DVec3::new(self.double(CONTEXT)?, self.double(CONTEXT)?, self.double(CONTEXT)?);
-        if v.abs().cmple(LARGEST).all() { Ok((v - offset).as_vec3()) } else { Err(self.too_far(v.as_vec3())) }
+        *self = start;
+        self.odd_position(offset)
     }
 
     #[cold]
-    fn too_far(&self, v: Vec3) -> Fault {
-        let (fault, hint) = match v.is_finite() {
-            true => ("exceed the largest coordinate 1e18", "scale the mesh down, or remove the vertex"),
-            false => ("are not finite", "remove it or repair the export"),
-        };
-        let problem = format!("a vertex has the values ({}, {}, {}), which {fault}", v.x, v.y, v.z);
-        Fault::new(self.line, problem, hint)
+    fn odd_position(&mut self, offset: DVec3) -> Result<Vec3, Fault> {
+        let v = self.odd_three(VERTEX)?;
+        Ok(narrow(if v.abs().cmple(LARGEST).all() { v - offset } else { v }))
     }
 
-    /// Reads a normal; a normal that is not finite is replaced by zero, and computed later.
+    /// Reads a normal; `None` if it is not three finite numbers.
     #[inline]
-    pub fn normal(&mut self) -> Result<Vec3, Fault> {
-        self.three("a normal").map(|v| if v.is_finite() { v } else { Vec3::ZERO })
+    pub fn normal(&mut self) -> Option<Vec3> {
+        let start = self.clone();
+        match self.three(NORMAL) {
+            Ok(normal) if normal.is_finite() => Some(normal),
+            _ => {
+                *self = start;
+                self.odd_three(NORMAL).ok().map(|normal| normal.as_vec3()).filter(|normal| normal.is_finite())
+            }
+        }
     }
 
     /// Reads a finite number; `context` is its name for messages.
@@ -215,6 +279,27 @@ impl<'a> Lines<'a> {
         }
         Ok(colour.max(Vec3::ZERO))
     }
+}
+
+/// The fault of a vertex that is not valid, see [`is_valid`].
+#[cold]
+pub fn invalid_vertex(line: usize, v: Vec3) -> Fault {
+    let (fault, hint) = match v.is_finite() && v.abs().max_element() < f32::MAX {
+        true => ("exceed the largest coordinate 1e18", "scale the mesh down, or remove the vertex"),
+        false => ("are not finite", "remove it or repair the export"),
+    };
+    Fault::new(line, format!("a vertex has the values ({}, {}, {}), which {fault}", v.x, v.y, v.z), hint)
+}
+
+/// The names of statements for messages.
+const VERTEX: &str = "a vertex";
+const NORMAL: &str = "a normal";
+
+/// The largest number of words of a statement that are searched for numbers in unusual notations.
+const MANY_WORDS: usize = 16;
+
+fn is_number(word: &[u8]) -> bool {
+    number::double(word).is_some_and(|(_, length)| length == word.len())
 }
 
 /// A name without the comment after it.

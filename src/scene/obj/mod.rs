@@ -15,13 +15,15 @@
 //!
 //! [`mtl`] converts materials. Emissive surfaces become point lights, see [`super::lamps`].
 
+mod corner;
 mod face;
 mod library;
 mod lines;
 pub mod mtl;
+mod pending;
 
-use super::mesh_builder::Warnings;
-use super::text::SceneFolders;
+use super::mesh_builder::{DROPPED, Warnings, drop_invalid, is_valid};
+use super::text::{SceneFolders, place, refuse_zeros};
 use super::{Material, Options, Placement, Scene, lamps, normals};
 use crate::error::{Error, Result};
 use crate::math::Vertex;
@@ -66,17 +68,23 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
 /// As [`read`].
 pub fn read_bytes(path: &Path, bytes: &[u8], options: &Options) -> Result<Scene> {
     let mut reader = ObjReader::new(path, options);
+    refuse_zeros(bytes).map_err(|fault| fault.of(path))?;
     reader.faces.read(bytes.len());
     let mut lines = Lines::new(bytes);
     while let Some(keyword) = lines.keyword() {
         reader.line(keyword, &mut lines)?;
         lines.end_statement();
     }
-    if reader.faces.triangles.is_empty() {
+    reader.unusual = lines.unusual;
+    let drops = reader.faces.complete().map_err(|fault| fault.of(path))?;
+    if reader.faces.triangles.iter().all(|triangle| triangle.vertices[0] == DROPPED) {
+        if let Some(fault) = reader.faces.problems.nothing_left() {
+            return Err(fault.of(path));
+        }
         let problem = "there is no face: points and curves cannot be ray traced";
         return Err(Error::file(path, None, problem, "export it as a polygonal mesh"));
     }
-    Ok(reader.finish())
+    Ok(reader.finish(drops))
 }
 
 /// The material of a name.
@@ -109,6 +117,8 @@ struct ObjReader<'a> {
     ignored: BTreeSet<String>,
     warnings: Warnings,
     textures: bool,
+    /// The first line with a number in an unusual notation.
+    unusual: Option<usize>,
 }
 
 impl<'a> ObjReader<'a> {
@@ -129,13 +139,28 @@ impl<'a> ObjReader<'a> {
             ignored: BTreeSet::new(),
             warnings: Warnings::default(),
             textures: false,
+            unusual: None,
         }
     }
 
     fn line(&mut self, keyword: &[u8], lines: &mut Lines) -> Result<()> {
         match keyword {
-            b"v" => lines.position(self.placement.offset).map(|v| self.faces.positions.push(v)),
-            b"vn" => lines.normal().map(|v| self.faces.normals.push(v)),
+            b"v" => {
+                let line = lines.line();
+                lines.position(self.placement.offset).map(|v| match is_valid(v) {
+                    true => self.faces.positions.push(v),
+                    false => self.faces.add_invalid(v, line, || place(self.path, line)),
+                })
+            }
+            b"vn" => {
+                let line = lines.line();
+                let normal = lines.normal();
+                if normal.is_none() {
+                    self.faces.problems.normal.get_or_insert(line);
+                }
+                self.faces.normals.push(normal.unwrap_or(Vec3::ZERO));
+                Ok(())
+            }
             b"f" | b"fo" => {
                 let (material, before) = (self.material(), self.faces.triangles.len());
                 let read = self.faces.face(lines, material);
@@ -178,30 +203,39 @@ impl<'a> ObjReader<'a> {
         }
     }
 
-    fn finish(self) -> Scene {
+    /// The scene; `drops` tells that there are triangles to be dropped.
+    fn finish(mut self, drops: bool) -> Scene {
         let (undefined, no_lamp) = (self.undefined(), self.no_lamp());
-        let Faces { positions, normals: given, keys, triangles, .. } = &self.faces;
+        let Faces { positions, normals: given, keys, triangles, problems, .. } = &mut self.faces;
         let mut bad = 0;
         let mut vertices: Vec<Vertex> = keys
             .iter()
             .map(|key| {
-                let normal = key.normal().map_or(Vec3::ZERO, |n| normals::unit(given[n]));
+                let normal = |n: usize| given.get(n).map_or(Vec3::ZERO, |&normal| normals::unit(normal));
+                let normal = key.normal().map_or(Vec3::ZERO, normal);
                 bad += usize::from(key.normal().is_some() && normal == Vec3::ZERO);
-                Vertex::new(positions[key.position as usize], normal)
+                // A vertex that only ignored faces with fewer than three corners use may not exist.
+                let position = positions.get(key.position as usize).copied().unwrap_or_default();
+                Vertex::new(position, normal)
             })
             .collect();
+        if drops || problems.has_invalid {
+            drop_invalid(&mut vertices, triangles);
+        }
         normals::normalise_or_smooth(&mut vertices, triangles);
         let lights = lamps::lights(&vertices, triangles, &self.emission);
         let (materials, placement) = (self.materials, self.placement);
         let mut scene = Scene { vertices, lights, materials, placement, ..Scene::default() };
         scene.triangles = self.faces.triangles;
         scene.warnings = self.warnings.lines();
+        let problems = self.faces.problems.warnings(self.path, self.faces.normals.len(), self.unusual);
         let mut warn = |warning: String| scene.warnings.push(warning);
         no_lamp.into_iter().for_each(&mut warn);
         let list = |names: &BTreeSet<String>| names.iter().take(8).cloned().collect::<Vec<_>>().join(", ");
         if bad > 0 {
             warn(format!("{bad} normals in the file are zero or not finite: computed instead"));
         }
+        problems.into_iter().for_each(&mut warn);
         if !undefined.is_empty() {
             warn(format!("materials that no library defines are neutral grey: {}", list(&undefined)));
         }

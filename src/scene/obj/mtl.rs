@@ -37,6 +37,23 @@ struct Values {
 }
 
 impl Values {
+    /// Reads a property; unknown ones are ignored.
+    ///
+    /// # Errors
+    /// The property has no numbers, or they are not finite.
+    fn read(&mut self, keyword: &[u8], lines: &mut Lines) -> Result<(), Fault> {
+        match keyword {
+            b"Kd" => self.diffuse = colour(lines, "Kd")?.or(self.diffuse),
+            b"Ka" => self.ambient = colour(lines, "Ka")?.or(self.ambient),
+            b"Ks" => self.specular = colour(lines, "Ks")?.unwrap_or(self.specular),
+            b"Ke" => self.emission = colour(lines, "Ke")?.unwrap_or(self.emission),
+            b"Ns" => self.exponent = Some(lines.number("Ns")?),
+            b"illum" => self.illumination = Some(lines.number("illum")?),
+            _ => {}
+        }
+        Ok(())
+    }
+
     fn material(&self) -> Material {
         let one = |colour: Vec3| colour.min(Vec3::ONE);
         let diffuse = one(self.diffuse.unwrap_or(Vec3::splat(0.8)));
@@ -54,8 +71,8 @@ impl Values {
     }
 }
 
-/// Parses a library.
-pub(super) fn parse(bytes: &[u8]) -> Result<Library, Fault> {
+/// Parses a library. A line with an error leaves its property unchanged; `warn` is called with the error.
+pub(super) fn parse(bytes: &[u8], mut warn: impl FnMut(Fault)) -> Library {
     let mut library = Library::default();
     let mut current: Option<(Vec<u8>, Values)> = None;
     let mut lines = Lines::new(bytes);
@@ -69,20 +86,16 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Library, Fault> {
             close(current.take(), &mut library);
             current = Some((lines.rest().into_owned(), Values::default()));
         } else if let Some((_, values)) = &mut current {
-            match keyword {
-                b"Kd" => values.diffuse = colour(&mut lines, "Kd")?.or(values.diffuse),
-                b"Ka" => values.ambient = colour(&mut lines, "Ka")?.or(values.ambient),
-                b"Ks" => values.specular = colour(&mut lines, "Ks")?.unwrap_or(values.specular),
-                b"Ke" => values.emission = colour(&mut lines, "Ke")?.unwrap_or(values.emission),
-                b"Ns" => values.exponent = Some(lines.number("Ns")?),
-                b"illum" => values.illumination = Some(lines.number("illum")?),
-                other => library.textures |= other.starts_with(b"map_K"),
+            if keyword.starts_with(b"map_K") {
+                library.textures = true;
+            } else if let Err(fault) = values.read(keyword, &mut lines) {
+                warn(fault);
             }
         }
         lines.end_statement();
     }
     close(current, &mut library);
-    Ok(library)
+    library
 }
 
 /// Reads a colour; `None` for a spectrum in another file or a CIE XYZ colour, which are ignored.

@@ -1,18 +1,16 @@
-//! Reads the body of a PLY file, ASCII or binary: vertices and faces.
+//! Reads the body of a PLY file, ASCII or binary: vertices, and rows of elements.
 
-use super::header::{Element, Header, PropertyType};
+use super::faces::FaceList;
+use super::header::{Element, Header, PropertyType, Scalar};
 use super::rows::{RowError, RowReader};
 use crate::math::Vertex;
-use crate::scene::mesh_builder::Limits;
+use crate::scene::mesh_builder::{Limits, NotFinite, drop_invalid, is_valid, narrow_number};
 use crate::scene::placement::MAX_COORDINATE;
-use crate::scene::polygon::{MAX_CORNERS, Triangulator, newell};
+use crate::scene::polygon::Triangulator;
 use crate::scene::text::{Fault, quote};
 use crate::scene::{MAX_ELEMENTS, Triangle};
 use glam::{DVec3, Vec3};
 use std::ops::Range;
-
-/// The memory of a polygon's triangles is checked every this many corners.
-const MANY: i64 = 4;
 
 /// The content of the body.
 #[derive(Default)]
@@ -24,30 +22,40 @@ pub struct Body {
     pub small_polygons: usize,
     /// Number of bytes after the last element.
     pub bytes_after: usize,
-    limits: Limits,
-    triangulator: Triangulator,
+    pub not_finite: NotFinite,
+    /// Lines with warnings about them.
+    pub warnings: Vec<(usize, String)>,
+    pub(super) limits: Limits,
+    pub(super) triangulator: Triangulator,
     /// Vertices of the current polygon.
-    corners: Vec<u32>,
+    pub(super) corners: Vec<u32>,
     /// Positions of the current polygon.
-    points: Vec<DVec3>,
+    pub(super) points: Vec<DVec3>,
     /// Triangles of polygons that precede their vertices in the file; they are triangulated at the end.
-    pending: Vec<Range<u32>>,
+    pub(super) pending: Vec<Range<u32>>,
+    /// True if a vertex is not valid, see [`is_valid`].
+    pub(super) has_invalid: bool,
+    /// True if vertices that are not valid follow faces in the file.
+    pub(super) late_invalid: bool,
+    /// The fault of the first vertex that is not finite.
+    first: Option<Fault>,
+    /// The first vertex beyond the largest coordinate, with its fault.
+    pub(super) far: Option<(u32, Fault)>,
 }
 
 /// The names of the properties of a vertex that are used.
 const ROLES: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
 
-/// Reads the body. `list` is the index of the list property of the faces, `length` the size of the body in bytes.
-/// `offset` is subtracted from all positions, in double precision.
+/// Reads the body; `length` is its size in bytes. `offset` is subtracted from all positions, in double precision.
 pub fn read<S: RowReader>(
     header: &Header,
     vertex: &Element,
-    (face, list): (&Element, usize),
+    faces: &[FaceList],
     mut source: S,
     length: usize,
     offset: Option<DVec3>,
 ) -> Result<Body, Fault> {
-    for element in [vertex, face] {
+    for element in faces.iter().map(|list| list.element).chain([vertex]) {
         if element.count > MAX_ELEMENTS as u64 {
             return Err(too_many(Some(element.line), element.count, &element.name));
         }
@@ -66,20 +74,28 @@ pub fn read<S: RowReader>(
                     read_vertices(element, &mut source, &mut body, vertex)?;
                 }
             }
-        } else if std::ptr::eq(element, face) {
-            read_faces(element, list, vertex.count, &mut source, &mut body)?;
+        } else if let Some(list) = faces.iter().find(|list| std::ptr::eq(element, list.element)) {
+            list.read(vertex.count, &mut source, &mut body)?;
         } else if !element.properties.is_empty() {
             for row in 0..element.count {
                 skip_row(element, &mut source).map_err(|error| explain(error, &source, element, row))?;
             }
         }
     }
-    for fan in std::mem::take(&mut body.pending) {
-        body.triangulate(fan.start as usize..fan.end as usize);
+    body.complete()?;
+    if body.has_invalid {
+        drop_invalid(&mut body.vertices, &mut body.triangles);
     }
     body.bytes_after = source.left();
+    body.warnings = source.warnings();
     if body.triangles.is_empty() {
-        return Err(Fault::new(Some(face.line), "no face has three corners or more", "export it as a mesh"));
+        let line = faces.first().map(|list| list.element.line);
+        return Err(match body.first.take() {
+            Some(fault) => {
+                Fault { problem: format!("{}, and no face is without such a vertex", fault.problem), ..fault }
+            }
+            None => Fault::new(line, "no face has three corners or more", "export it as a mesh"),
+        });
     }
     Ok(body)
 }
@@ -115,7 +131,7 @@ fn check_counts<S: RowReader>(header: &Header, length: usize) -> Result<(), Faul
     Ok(())
 }
 
-fn too_many(line: Option<usize>, count: u64, name: &str) -> Fault {
+pub(super) fn too_many(line: Option<usize>, count: u64, name: &str) -> Fault {
     Fault::new(
         line,
         format!("{count} elements {} are more than rtbench supports ({MAX_ELEMENTS})", quote(name)),
@@ -125,7 +141,7 @@ fn too_many(line: Option<usize>, count: u64, name: &str) -> Fault {
 
 /// Converts the error of a row to a message. Messages are formatted only here, off the fast path.
 #[cold]
-fn explain<S: RowReader>(error: RowError, source: &S, element: &Element, row: u64) -> Fault {
+pub(super) fn explain<S: RowReader>(error: RowError, source: &S, element: &Element, row: u64) -> Fault {
     let token = String::from_utf8_lossy(source.token()).into_owned();
     let place = format!("{} {row}", element.name);
     let (problem, hint) = match error {
@@ -155,30 +171,50 @@ fn read_vertices<S: RowReader>(
     body: &mut Body,
     vertex: impl Fn(&[Role], &mut S) -> Result<[f32; 6], RowError>,
 ) -> Result<(), Fault> {
-    let roles: Vec<Role> =
-        element.properties.iter().map(|p| (p.kind, ROLES.iter().position(|&name| name == p.name))).collect();
-    let scalar =
-        |name: &&str| element.find(name).is_some_and(|i| matches!(element.properties[i].kind, PropertyType::Scalar(_)));
-    body.has_normals = ROLES[3..].iter().all(scalar);
+    let places = ROLES.map(|name| element.find(name));
+    let role = |i: usize| places.iter().position(|place| *place == Some(i));
+    let roles: Vec<Role> = element.properties.iter().enumerate().map(|(i, p)| (p.kind, role(i))).collect();
+    let scalar = |place: &Option<usize>| {
+        place.is_some_and(
+            |i| matches!(element.properties[i].kind, PropertyType::Scalar(scalar) if scalar != Scalar::Other),
+        )
+    };
+    body.has_normals = places[3..].iter().all(scalar);
     // The count has been compared with the size of the file.
     body.vertices.reserve_exact(element.count as usize);
     for row in 0..element.count {
         let values = vertex(&roles, source).map_err(|error| explain(error, source, element, row))?;
         let position = Vec3::new(values[0], values[1], values[2]);
-        if !position.abs().cmple(LARGEST).all() {
-            return Err(too_far(source.line(), row, position));
+        if !is_valid(position) {
+            body.add_invalid(source.line(), row, position);
         }
         body.vertices.push(Vertex::new(position, Vec3::new(values[3], values[4], values[5])));
     }
     Ok(())
 }
 
-/// The largest valid position.
-const LARGEST: Vec3 = Vec3::splat(MAX_COORDINATE as f32);
+impl Body {
+    /// Adds a vertex that is not valid.
+    #[cold]
+    fn add_invalid(&mut self, line: Option<usize>, row: u64, position: Vec3) {
+        self.late_invalid |= !self.triangles.is_empty();
+        self.has_invalid = true;
+        if position.is_finite() {
+            self.far.get_or_insert_with(|| (row as u32, invalid_vertex(line, row, position)));
+            return;
+        }
+        self.not_finite.add_vertex(|| match line {
+            Some(line) => format!("line {line}"),
+            None => format!("vertex {row}"),
+        });
+        self.first.get_or_insert_with(|| invalid_vertex(line, row, position));
+    }
+}
 
+/// The fault of a vertex that is not valid.
 #[cold]
-fn too_far(line: Option<usize>, row: u64, position: Vec3) -> Fault {
-    let (fault, hint) = match position.is_finite() {
+pub(super) fn invalid_vertex(line: Option<usize>, row: u64, position: Vec3) -> Fault {
+    let (fault, hint) = match position.is_finite() && position.abs().max_element() < f32::MAX {
         true => ("beyond the largest coordinate 1e18", "scale the mesh down, or remove the vertex"),
         false => {
             ("not finite", "coordinates must be finite in single precision: remove the vertex or repair the export")
@@ -196,11 +232,13 @@ fn read_far_vertex<S: RowReader>(roles: &[Role], source: &mut S, offset: DVec3) 
         match (kind, role) {
             (PropertyType::Scalar(scalar), Some(role @ 0..3)) => {
                 let value = source.double(scalar)?;
-                // A coordinate out of range remains out of range, so that it is refused.
+                // A coordinate out of range remains out of range, so that it is not valid.
                 let within = value.abs() <= MAX_COORDINATE;
-                values[role] = if within { (value - offset[role]) as f32 } else { value as f32 };
+                values[role] = if within { (value - offset[role]) as f32 } else { narrow_number(value) };
             }
-            (PropertyType::Scalar(scalar), Some(role)) => values[role] = source.float(scalar)?,
+            (PropertyType::Scalar(scalar), Some(role)) if scalar != Scalar::Other => {
+                values[role] = source.normal(scalar)?;
+            }
             _ => skip(kind, source)?,
         }
     }
@@ -214,146 +252,15 @@ fn read_vertex<S: RowReader>(roles: &[Role], source: &mut S) -> Result<[f32; 6],
     source.begin()?;
     for &(kind, role) in roles {
         match (kind, role) {
-            (PropertyType::Scalar(scalar), Some(role)) => values[role] = source.float(scalar)?,
+            (PropertyType::Scalar(scalar), Some(role @ 0..3)) => values[role] = source.float(scalar)?,
+            (PropertyType::Scalar(scalar), Some(role)) if scalar != Scalar::Other => {
+                values[role] = source.normal(scalar)?;
+            }
             _ => skip(kind, source)?,
         }
     }
     source.end()?;
     Ok(values)
-}
-
-fn read_faces<S: RowReader>(
-    element: &Element,
-    list: usize,
-    vertices: u64,
-    source: &mut S,
-    body: &mut Body,
-) -> Result<(), Fault> {
-    let least: u64 = match element.properties[list].kind {
-        PropertyType::List { count, item } => S::least(count) + 3 * S::least(item),
-        PropertyType::Scalar(_) => 1,
-    };
-    // Reserves one triangle per face, if the file can hold that many.
-    body.triangles.reserve(element.count.min(source.left() as u64 / least + 1) as usize);
-    for row in 0..element.count {
-        read_face(element, list, vertices, source, body).map_err(|error| match error {
-            FaceError::Row(error) => explain(error, source, element, row),
-            FaceError::Index(index) => Fault::new(
-                source.line(),
-                format!("face {row} uses vertex {index}, but there are only {vertices} vertices (0 to {})", {
-                    vertices.saturating_sub(1)
-                }),
-                "repair the face or the vertex count",
-            ),
-            FaceError::TooMany => too_many(source.line(), body.triangles.len() as u64, "triangle"),
-            FaceError::Memory(problem) => Fault::new(source.line(), problem, "use polygons with fewer corners"),
-        })?;
-    }
-    Ok(())
-}
-
-/// The error of a face.
-enum FaceError {
-    Row(RowError),
-    /// The index of a vertex is out of range.
-    Index(i64),
-    /// There are too many triangles.
-    TooMany,
-    /// The memory limit is exceeded.
-    Memory(String),
-}
-
-impl Body {
-    /// Checks the memory limit: a corner can take a single byte in the file, its triangle takes sixteen.
-    fn check_memory(&self, vertices: u64) -> Result<(), FaceError> {
-        // Computing normals needs a second copy of the vertices; a growing vector temporarily exists in two sizes.
-        let [vertices, triangles] = [vertices as usize * size_of::<Vertex>(), size_of_val(&*self.triangles)];
-        let bytes = 2 * vertices + 3 * triangles + 3 * size_of_val(&*self.pending);
-        self.limits.check_temporary(bytes).map_err(|fault| FaceError::Memory(fault.problem))
-    }
-
-    /// Triangulates a polygon, of which `fan` are the triangles so far, once its vertices have been read.
-    fn polygon(&mut self, fan: Range<usize>, vertices: u64) {
-        if fan.len() > MAX_CORNERS - 2 {
-            return;
-        }
-        if (self.vertices.len() as u64) < vertices {
-            self.pending.push(fan.start as u32..fan.end as u32);
-        } else {
-            self.triangulate(fan);
-        }
-    }
-
-    /// Replaces the triangles of a fan by those of [`Triangulator::triangles`].
-    fn triangulate(&mut self, fan: Range<usize>) {
-        let Body { vertices, triangles, corners, points, triangulator, .. } = self;
-        let fan = &mut triangles[fan];
-        corners.clear();
-        corners.extend(&fan[0].vertices[..2]);
-        corners.extend(fan.iter().map(|triangle| triangle.vertices[2]));
-        points.clear();
-        points.extend(corners.iter().map(|&corner| vertices[corner as usize].position.as_dvec3()));
-        let found = triangulator.triangles(points, &[], newell(points));
-        for (triangle, found) in fan.iter_mut().zip(found) {
-            triangle.vertices = found.map(|i| corners[i as usize]);
-        }
-    }
-}
-
-impl From<RowError> for FaceError {
-    fn from(error: RowError) -> FaceError {
-        FaceError::Row(error)
-    }
-}
-
-#[inline(always)]
-fn read_face<S: RowReader>(
-    element: &Element,
-    list: usize,
-    vertices: u64,
-    source: &mut S,
-    body: &mut Body,
-) -> Result<(), FaceError> {
-    source.begin()?;
-    for (i, property) in element.properties.iter().enumerate() {
-        match property.kind {
-            PropertyType::List { count, item } if i == list => {
-                let corners = source.integer(count)?;
-                if corners < 0 {
-                    return Err(RowError::Count.into());
-                }
-                let mut next = || match source.integer(item)? {
-                    index if index >= 0 && (index as u64) < vertices => Ok(index as u32),
-                    index => Err(FaceError::Index(index)),
-                };
-                if corners < 3 {
-                    body.small_polygons += 1;
-                    for _ in 0..corners {
-                        next()?;
-                    }
-                    continue;
-                }
-                let begin = body.triangles.len();
-                let (first, mut previous) = (next()?, next()?);
-                for i in 2..corners {
-                    let corner = next()?;
-                    body.triangles.push(Triangle { vertices: [first, previous, corner], material: 0 });
-                    previous = corner;
-                    if i % MANY == 0 {
-                        body.check_memory(vertices)?;
-                    }
-                }
-                if body.triangles.len() > MAX_ELEMENTS {
-                    return Err(FaceError::TooMany);
-                }
-                if corners > 3 {
-                    body.polygon(begin..body.triangles.len(), vertices);
-                }
-            }
-            kind => skip(kind, source)?,
-        }
-    }
-    Ok(source.end()?)
 }
 
 fn skip_row<S: RowReader>(element: &Element, source: &mut S) -> Result<(), RowError> {
@@ -365,7 +272,7 @@ fn skip_row<S: RowReader>(element: &Element, source: &mut S) -> Result<(), RowEr
 }
 
 #[inline]
-fn skip<S: RowReader>(kind: PropertyType, source: &mut S) -> Result<(), RowError> {
+pub(super) fn skip<S: RowReader>(kind: PropertyType, source: &mut S) -> Result<(), RowError> {
     match kind {
         PropertyType::Scalar(scalar) => source.skip(scalar, 1),
         PropertyType::List { count, item } => {

@@ -6,20 +6,24 @@
 //! every count with the remaining bytes before it allocates memory.
 //!
 //! The reader supports x, y, z of the vertices; nx, ny, nz if all three exist (otherwise smooth normals are computed,
-//! see [`crate::scene::normals`]); and `vertex_indices` or `vertex_index` of the faces. [`super::polygon`] triangulates
-//! polygons. All other properties and elements are ignored.
+//! see [`crate::scene::normals`]); `vertex_indices` or `vertex_index` of the faces; and triangle strips. [`super::polygon`]
+//! triangulates polygons. All other properties and elements are ignored.
 
+mod ascii;
 mod body;
+mod faces;
 mod header;
 mod rows;
 
-use super::text::Fault;
+use super::text::{Fault, place, refuse_zeros};
 use super::{Options, Placement, Scene, normals};
 use crate::error::Result;
+use ascii::{Ascii, Layout};
 use body::Body;
+use faces::FaceList;
 use glam::DVec3;
-use header::{Element, Encoding, Header, PropertyType};
-use rows::{Ascii, Binary};
+use header::{Element, Encoding, FACES, Header, PropertyType};
+use rows::Binary;
 use std::path::Path;
 
 /// Reads the file.
@@ -31,7 +35,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     let body = parse(&bytes, options.offset).map_err(|fault| fault.of(path))?;
     // The file's bytes are released before more memory is allocated.
     drop(bytes);
-    Ok(finish(body, options.offset))
+    Ok(finish(path, body, options.offset))
 }
 
 /// Reads a file from memory; `path` is only used for errors.
@@ -40,21 +44,34 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
 /// As [`read`].
 pub fn read_bytes(path: &Path, bytes: &[u8]) -> Result<Scene> {
     let body = parse(bytes, None).map_err(|fault| fault.of(path))?;
-    Ok(finish(body, None))
+    Ok(finish(path, body, None))
 }
 
 fn parse(bytes: &[u8], offset: Option<DVec3>) -> Result<Body, Fault> {
-    let header = header::parse(bytes)?;
+    let mut header = header::parse(bytes)?;
+    let mut warnings = std::mem::take(&mut header.warnings);
     let vertex = vertex_element(&header)?;
-    let face = face_element(&header)?;
+    let faces = face_elements(&header)?;
     let body = &bytes[header.body..];
-    match header.encoding {
+    let ascii = |layout| {
+        let rows = Ascii::new(body, header.body_line, header.newline, layout);
+        body::read(&header, vertex, &faces, rows, body.len(), offset)
+    };
+    let mut body = match header.encoding {
         Encoding::Ascii => {
-            body::read(&header, vertex, face, Ascii::new(body, header.body_line, header.newline), body.len(), offset)
+            refuse_zeros(bytes)?;
+            ascii(Layout::Lines).or_else(|fault| {
+                let whole = |body: &Body| body.bytes_after == 0;
+                let free = ascii(Layout::Free).ok().filter(whole);
+                free.or_else(|| ascii(Layout::Surplus).ok().filter(whole)).ok_or(fault)
+            })
         }
-        Encoding::LittleEndian => body::read(&header, vertex, face, Binary::<false>::new(body), body.len(), offset),
-        Encoding::BigEndian => body::read(&header, vertex, face, Binary::<true>::new(body), body.len(), offset),
-    }
+        Encoding::LittleEndian => body::read(&header, vertex, &faces, Binary::<false>::new(body), body.len(), offset),
+        Encoding::BigEndian => body::read(&header, vertex, &faces, Binary::<true>::new(body), body.len(), offset),
+    }?;
+    warnings.append(&mut body.warnings);
+    body.warnings = warnings;
+    Ok(body)
 }
 
 fn vertex_element(header: &Header) -> Result<&Element, Fault> {
@@ -80,41 +97,43 @@ fn vertex_element(header: &Header) -> Result<&Element, Fault> {
     Ok(vertex)
 }
 
-/// The face element and the index of its list.
-fn face_element(header: &Header) -> Result<(&Element, usize), Fault> {
-    let no_faces = |line| {
-        let hint = if header.element("tristrips").is_some() {
-            "it holds triangle strips: convert them to faces, for instance with MeshLab"
-        } else {
-            "export it with an `element face` that lists vertex indices"
-        };
-        Fault::new(line, "there are no faces: a point cloud cannot be ray traced", hint)
-    };
-    let face = header.element("face").ok_or_else(|| no_faces(None))?;
-    if face.count == 0 {
-        return Err(no_faces(Some(face.line)));
+/// The elements with faces: polygons or triangle strips.
+fn face_elements(header: &Header) -> Result<Vec<FaceList<'_>>, Fault> {
+    let elements: Vec<&Element> = FACES.iter().filter_map(|name| header.element(name)).collect();
+    let mut faces = Vec::new();
+    for element in elements.iter().filter(|element| element.count > 0) {
+        faces.push(face_list(element)?);
     }
-    let list = face.find("vertex_indices").or_else(|| face.find("vertex_index"));
+    if faces.is_empty() {
+        let line = elements.first().map(|element| element.line);
+        let hint = "export it with an `element face` that lists vertex indices";
+        return Err(Fault::new(line, "there are no faces: a point cloud cannot be ray traced", hint));
+    }
+    Ok(faces)
+}
+
+/// The list of vertex indices of an element.
+fn face_list(element: &Element) -> Result<FaceList<'_>, Fault> {
+    let hint = "write `property list uchar int vertex_indices` below the element";
+    let list = element.find("vertex_indices").or_else(|| element.find("vertex_index"));
     let Some(list) = list else {
-        return Err(Fault::new(
-            Some(face.line),
-            "the faces have no list `vertex_indices`",
-            "write `property list uchar int vertex_indices` below the element",
-        ));
+        return Err(Fault::new(Some(element.line), "the faces have no list `vertex_indices`", hint));
     };
-    match face.properties[list].kind {
-        PropertyType::List { item, .. } if item.is_integer() => Ok((face, list)),
-        _ => Err(Fault::new(
-            Some(face.line),
-            "the faces' vertex indices are not a list of integers",
-            "write `property list uchar int vertex_indices` below the element",
-        )),
+    match element.properties[list].kind {
+        PropertyType::List { .. } => {
+            Ok(FaceList { element, list, is_strip: element.name.eq_ignore_ascii_case("tristrips") })
+        }
+        PropertyType::Scalar(_) => {
+            let problem = "the faces' vertex indices are not a list of integers";
+            Err(Fault::new(Some(element.line), problem, hint))
+        }
     }
 }
 
 /// The scene with normals and warnings.
-fn finish(body: Body, offset: Option<DVec3>) -> Scene {
+fn finish(path: &Path, body: Body, offset: Option<DVec3>) -> Scene {
     let placement = Placement { offset: offset.unwrap_or(DVec3::ZERO), exponent: 0 };
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut scene = Scene { vertices: body.vertices, triangles: body.triangles, placement, ..Scene::default() };
     if body.has_normals {
         let repaired = normals::normalise_or_smooth(&mut scene.vertices, &scene.triangles);
@@ -124,6 +143,8 @@ fn finish(body: Body, offset: Option<DVec3>) -> Scene {
     } else {
         normals::smooth(&mut scene.vertices, &scene.triangles);
     }
+    scene.warnings.extend(body.not_finite.warning().map(|warning| format!("{name}: {warning}")));
+    scene.warnings.extend(body.warnings.iter().map(|(line, text)| format!("{}: {text}", place(path, *line))));
     if body.small_polygons > 0 {
         scene.warnings.push(format!("{} faces with fewer than three corners ignored", body.small_polygons));
     }

@@ -1,7 +1,7 @@
-//! A common interface for the rows of ASCII and binary bodies.
+//! A common interface for the rows of ASCII and binary bodies, and binary bodies.
 
 use super::header::Scalar;
-use crate::scene::text::number;
+use crate::scene::mesh_builder::narrow_number;
 
 /// The error of a value. It is small and `Copy`; the caller knows the position and formats the message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,6 +28,8 @@ pub trait RowReader {
     fn end(&mut self) -> Result<(), RowError>;
     /// Reads a value, rounded to single precision.
     fn float(&mut self, kind: Scalar) -> Result<f32, RowError>;
+    /// Reads a component of a normal. A text that is no number is NaN.
+    fn normal(&mut self, kind: Scalar) -> Result<f32, RowError>;
     /// Reads a value in double precision, even if its declared type is a float: text can have more digits.
     fn double(&mut self, kind: Scalar) -> Result<f64, RowError>;
     /// Reads a value of an integer type.
@@ -40,119 +42,12 @@ pub trait RowReader {
     fn line(&self) -> Option<usize>;
     /// The text of the last value; empty in a binary file.
     fn token(&self) -> &[u8];
+    /// Lines with warnings about them.
+    fn warnings(&self) -> Vec<(usize, String)> {
+        Vec::new()
+    }
     /// The smallest size of a value in bytes.
     fn least(kind: Scalar) -> u64;
-}
-
-/// An ASCII body: a row per line, with values between blanks.
-pub struct Ascii<'a> {
-    bytes: &'a [u8],
-    at: usize,
-    token_start: usize,
-    line: usize,
-    newline: u8,
-}
-
-impl<'a> Ascii<'a> {
-    /// A reader of `bytes`, which begin at line `line` of the file.
-    pub fn new(bytes: &'a [u8], line: usize, newline: u8) -> Self {
-        Ascii { bytes, at: 0, token_start: 0, line, newline }
-    }
-
-    /// Skips bytes up to the space, except the byte that ends lines. In CRLF, CR is therefore a blank.
-    #[inline(always)]
-    fn skip_blanks(&mut self) {
-        while self.bytes.get(self.at).is_some_and(|&b| b <= b' ' && b != self.newline) {
-            self.at += 1;
-        }
-    }
-
-    /// Advances to the next token of this line.
-    #[inline(always)]
-    fn seek(&mut self) -> Result<&'a [u8], RowError> {
-        self.skip_blanks();
-        self.token_start = self.at;
-        match self.bytes.get(self.at) {
-            None => Err(RowError::End),
-            Some(&b) if b == self.newline => Err(RowError::Short),
-            Some(_) => Ok(&self.bytes[self.at..]),
-        }
-    }
-}
-
-impl RowReader for Ascii<'_> {
-    fn begin(&mut self) -> Result<(), RowError> {
-        loop {
-            self.skip_blanks();
-            match self.bytes.get(self.at) {
-                None => return Err(RowError::End),
-                Some(&b) if b == self.newline => {
-                    self.at += 1;
-                    self.line += 1;
-                }
-                Some(_) => return Ok(()),
-            }
-        }
-    }
-
-    fn end(&mut self) -> Result<(), RowError> {
-        match self.seek() {
-            Ok(_) => Err(RowError::Long),
-            Err(_) => Ok(()),
-        }
-    }
-
-    #[inline]
-    fn float(&mut self, kind: Scalar) -> Result<f32, RowError> {
-        let rest = self.seek()?;
-        let (value, length) = match kind {
-            Scalar::F32 => number::float(rest),
-            _ => number::double(rest).map(|(value, length)| (value as f32, length)),
-        }
-        .ok_or(RowError::Number)?;
-        self.at += length;
-        Ok(value)
-    }
-
-    #[inline]
-    fn double(&mut self, _kind: Scalar) -> Result<f64, RowError> {
-        let (value, length) = number::double(self.seek()?).ok_or(RowError::Number)?;
-        self.at += length;
-        Ok(value)
-    }
-
-    #[inline]
-    fn integer(&mut self, _kind: Scalar) -> Result<i64, RowError> {
-        let (value, length) = number::integer(self.seek()?).ok_or(RowError::Integer)?;
-        self.at += length;
-        Ok(value)
-    }
-
-    fn skip(&mut self, _kind: Scalar, n: u64) -> Result<(), RowError> {
-        for _ in 0..n {
-            self.at += number::token_length(self.seek()?);
-        }
-        Ok(())
-    }
-
-    fn left(&self) -> usize {
-        let rest = &self.bytes[self.at..];
-        rest.len() - rest.iter().take_while(|&&b| b <= b' ').count()
-    }
-
-    fn line(&self) -> Option<usize> {
-        Some(self.line)
-    }
-
-    fn token(&self) -> &[u8] {
-        let rest = &self.bytes[self.token_start..];
-        &rest[..number::token_length(rest)]
-    }
-
-    /// A digit and a separator.
-    fn least(_kind: Scalar) -> u64 {
-        2
-    }
 }
 
 /// A binary body.
@@ -181,6 +76,12 @@ macro_rules! value {
     }};
 }
 
+/// A float that is a whole number.
+#[cold]
+fn whole(value: f64) -> Result<i64, RowError> {
+    if value.fract() == 0.0 && value.abs() < 1e15 { Ok(value as i64) } else { Err(RowError::Integer) }
+}
+
 impl<const BIG_ENDIAN: bool> RowReader for Binary<'_, BIG_ENDIAN> {
     fn begin(&mut self) -> Result<(), RowError> {
         Ok(())
@@ -194,9 +95,17 @@ impl<const BIG_ENDIAN: bool> RowReader for Binary<'_, BIG_ENDIAN> {
     fn float(&mut self, kind: Scalar) -> Result<f32, RowError> {
         Ok(match kind {
             Scalar::F32 => value!(self, f32),
-            Scalar::F64 => value!(self, f64) as f32,
+            Scalar::F64 => match value!(self, f64) {
+                value if (value as f32).is_infinite() => narrow_number(value),
+                value => value as f32,
+            },
             _ => self.integer(kind)? as f32,
         })
+    }
+
+    #[inline]
+    fn normal(&mut self, kind: Scalar) -> Result<f32, RowError> {
+        self.float(kind)
     }
 
     #[inline]
@@ -217,7 +126,11 @@ impl<const BIG_ENDIAN: bool> RowReader for Binary<'_, BIG_ENDIAN> {
             Scalar::U16 => value!(self, u16).into(),
             Scalar::I32 => value!(self, i32).into(),
             Scalar::U32 => value!(self, u32).into(),
-            Scalar::F32 | Scalar::F64 => return Err(RowError::Integer),
+            Scalar::I64 => value!(self, i64),
+            Scalar::U64 => i64::try_from(value!(self, u64)).unwrap_or(i64::MAX),
+            Scalar::F32 => whole(value!(self, f32).into())?,
+            Scalar::F64 => whole(value!(self, f64))?,
+            Scalar::Other => return Err(RowError::Integer),
         })
     }
 

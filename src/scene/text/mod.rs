@@ -1,12 +1,15 @@
 //! Shared parts of the readers of text formats: tokens with line numbers, numbers, includes, errors.
 
+mod encoding;
 mod folders;
 mod includes;
 pub mod number;
 mod numbers;
+pub mod odd;
 mod tokenizer;
 
 use crate::error::Error;
+pub use encoding::{refuse_zeros, to_utf8};
 pub use folders::SceneFolders;
 pub use includes::Includes;
 use std::path::Path;
@@ -36,6 +39,11 @@ impl Fault {
     pub fn of(self, path: &Path) -> Error {
         Error::file(path, self.line, self.problem, self.hint)
     }
+}
+
+/// The place of a line for a warning: the file's name without its folder, and the line.
+pub fn place(path: &Path, line: usize) -> String {
+    format!("{}:{line}", path.file_name().unwrap_or_default().to_string_lossy())
 }
 
 /// An error while reading a file that may include others.

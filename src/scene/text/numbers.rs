@@ -1,7 +1,15 @@
 //! Numbers, indices and counts among the tokens of a text.
 
 use super::tokenizer::Tokenizer;
-use super::{Fault, number, quote_bytes};
+use super::{Fault, number, odd, quote_bytes};
+
+/// The value of a whole word, see [`odd::value`].
+fn value_of(word: &[u8]) -> Option<f64> {
+    match number::double(word) {
+        Some((value, length)) if length == word.len() => Some(value),
+        _ => odd::value(word),
+    }
+}
 
 impl Tokenizer<'_> {
     /// Reads the next token as a finite number: `1`, `1.`, `.5`, `+1`, `-3e-2`, `1.e5`.
@@ -20,15 +28,42 @@ impl Tokenizer<'_> {
     /// punctuation. Everything else is an error.
     fn other_number(&mut self, context: &str) -> Result<f64, Fault> {
         let word = self.need(context)?;
-        match number::double(word) {
-            Some((value, length)) if length == word.len() && value.is_finite() => Ok(value),
+        match value_of(word) {
+            Some(value) if value.is_finite() => Ok(value),
             _ => Err(self.no_number(word, context)),
         }
     }
 
+    /// Reads the next token as a number that need not be finite; see [`odd::value`].
+    ///
+    /// # Errors
+    /// The token is not a number in any spelling.
+    #[inline]
+    pub fn any_number(&mut self, context: &str) -> Result<f64, Fault> {
+        match self.plain_number() {
+            Some(value) => Ok(value),
+            None => {
+                let word = self.need(context)?;
+                value_of(word).ok_or_else(|| self.no_number(word, context))
+            }
+        }
+    }
+
+    /// Reads `N` numbers that need not be finite.
+    ///
+    /// # Errors
+    /// As [`Tokenizer::any_number`].
+    pub fn any_numbers<const N: usize>(&mut self, context: &str) -> Result<[f64; N], Fault> {
+        let mut values = [0.0; N];
+        for value in &mut values {
+            *value = self.any_number(context)?;
+        }
+        Ok(values)
+    }
+
     #[cold]
     fn no_number(&self, word: &[u8], context: &str) -> Fault {
-        let kind = if number::double(word).is_some() { "a finite number" } else { "a number" };
+        let kind = if odd::value(word).is_some() { "a finite number" } else { "a number" };
         self.fault(format!("{context}: {} is not {kind}", quote_bytes(word)), "")
     }
 

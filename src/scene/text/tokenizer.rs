@@ -1,7 +1,7 @@
 //! Splits a text into tokens with line numbers, without copying. The text may have any encoding that extends ASCII.
 
-use super::number;
 use super::{Fault, quote_bytes};
+use super::{number, odd};
 
 /// The meaning of a byte.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -163,6 +163,9 @@ impl<'a> Tokenizer<'a> {
                 let length = rest.iter().position(|&b| self.syntax.class(b) != ByteClass::Word).unwrap_or(rest.len());
                 match rest.get(length).map(|&b| self.syntax.class(b)) {
                     Some(ByteClass::Continuation) => length_with_backslashes(self.syntax, rest),
+                    Some(ByteClass::Comment | ByteClass::Punctuation) if matches!(rest[length], b'#' | b'(') => {
+                        length_of_none(rest, length)
+                    }
                     _ => length,
                 }
             }
@@ -314,6 +317,22 @@ fn length_with_backslashes(syntax: &Syntax, bytes: &[u8]) -> usize {
         _ => true,
     };
     (0..bytes.len()).find(|&at| ends(at)).unwrap_or(bytes.len())
+}
+
+/// Length of a word that ends at `length` with `#` or `(`, unless these are parts of a number that is none, such as
+/// `-1.#IND` and `-nan(ind)`.
+#[cold]
+fn length_of_none(bytes: &[u8], length: usize) -> usize {
+    let end = bytes[length..].iter().position(|&b| b <= b' ').map_or(bytes.len(), |at| length + at);
+    let whole = match bytes[length] {
+        b'(' => bytes[length..end].iter().position(|&b| b == b')').map(|at| length + at + 1),
+        _ => {
+            let letters = bytes[length + 1..end].iter().take_while(|b| b.is_ascii_alphanumeric() || b"+-".contains(b));
+            Some(length + 1 + letters.count())
+        }
+    };
+    let none = |end: &usize| odd::value(&bytes[..*end]).is_some();
+    whole.filter(none).unwrap_or(length)
 }
 
 /// Length of a string, including its quotation marks. An unterminated string extends to the end of the text.

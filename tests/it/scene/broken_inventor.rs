@@ -33,18 +33,6 @@ fn each_error_has_its_line() {
         ("POINTS FaceSet { numVertices [ 3, 3 ] }", "6 coordinates are needed, but there are 5"),
         ("POINTS FaceSet { startIndex -1 }", "startIndex: -1 is negative"),
         ("POINTS QuadMesh { verticesPerColumn 1000000000 verticesPerRow 1000000000 }", "coordinates are needed"),
-        (
-            "POINTS MaterialBinding { value PER_FACE_INDEXED } IndexedFaceSet { coordIndex [ 0 1 2 ] materialIndex 1 }",
-            "materialIndex: index 1 is out of range, there are 1 materials",
-        ),
-        (
-            "POINTS MaterialBinding { value PER_FACE_INDEXED } IndexedFaceSet { coordIndex [ 0 1 2 -1 0 2 3 ] materialIndex 0 }",
-            "materialIndex: 1 indices are not enough",
-        ),
-        (
-            "POINTS Normal { vector 0 0 1 } IndexedFaceSet { coordIndex [ 0 1 2 ] normalIndex [ 0 -1 0 ] }",
-            "normalIndex: -1, entry 1 of the list, is not an index",
-        ),
         ("MaterialBinding { value PER_MOON }", "value: `PER_MOON` is not one of its values"),
         ("RotationXYZ { axis W }", "axis: `W` is not an axis"),
         ("Units { units CUBITS }", "`CUBITS` is not a unit"),

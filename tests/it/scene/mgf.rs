@@ -130,7 +130,7 @@ fn each_error_has_its_line() {
         ("v x y", &[":18: v: the arguments do not select a context"]),
         ("p 1 2", &[":18: p: there are 2 arguments, but 3 numbers are needed"]),
         ("p 1 2 z", &["`z` is not a finite number"]),
-        ("p 1 2 1e999", &["`1e999` is not a finite number"]),
+        ("v x =\np 1 2 1e999\nf a b x", &["there is no triangle: 1 faces with vertices that are not finite"]),
         ("v x =\np 1e99 0 0\nf a b x", &[":20: f: a corner at"]),
         ("cxy .9 .9", &["the colour is not valid"]),
         ("cspec 400 700", &["the colour is not valid"]),

