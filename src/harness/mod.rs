@@ -12,6 +12,7 @@ pub mod previous;
 pub mod run;
 pub mod summary;
 mod turns;
+pub mod warnings;
 pub mod workload;
 
 pub use order::order;

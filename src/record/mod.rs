@@ -8,5 +8,6 @@ pub mod journal;
 pub mod picture;
 pub mod row;
 pub mod run;
+pub mod schema;
 pub mod statistics;
 pub mod terminal;

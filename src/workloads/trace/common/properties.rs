@@ -2,10 +2,11 @@
 
 use crate::scene::Scene;
 use crate::workloads::trace::TriangleRef;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Properties of a built structure; `None` where a property has no meaning for it.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Properties {
     /// Grid: cells on x.
     pub cells_x: Option<u32>,
