@@ -27,13 +27,16 @@ pub fn of<T: JsonSchema>(title: &str, settings: SchemaSettings) -> Value {
     schema
 }
 
-/// Turns links of rustdoc in descriptions into plain code: [`a::b`] into `b`.
+/// Turns what rustdoc has in descriptions into what a reader of JSON knows: links such as [`a::b`] into `b`, and `None`
+/// into null.
 fn plain(value: &mut Value) {
     match value {
         Value::Object(object) => {
             for (key, value) in object {
                 match value {
-                    Value::String(text) if key == "description" => *text = without_links(text),
+                    Value::String(text) if key == "description" => {
+                        *text = without_links(text).replace("`None`", "null")
+                    }
                     _ => plain(value),
                 }
             }

@@ -128,7 +128,7 @@ fn rtbench(arguments: &[&str]) -> std::process::Output {
 fn the_command_prints_what_a_run_records() {
     let out = tempfile::tempdir().unwrap();
     let folder = out.path().join("run");
-    let sweep = "sweep --backend cpu --scene hall:triangles=200 --structure bvh-stack --config P --resolution 8 \
+    let sweep = "sweep --backend cpu --scene scan:triangles=3000 --structure bvh-stack --config P --resolution 8 \
                  --frames 1 --passes 1 --quiet --out";
     let arguments: Vec<&str> = sweep.split_whitespace().chain([folder.to_str().unwrap()]).collect();
     let run = rtbench(&arguments);

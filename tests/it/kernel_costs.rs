@@ -37,11 +37,11 @@ fn small_kernels_count_as_by_hand() {
     // id.x (twice, as it is written), the two elements' addresses; the operators
     let one = KernelCost { load: 1, store: 1, arithmetic: 1, other: 4, bindings: 1, ..nothing };
     assert_eq!(with_body("words[id.x] = words[id.x] + 1u;"), one);
-    // A loop counts once: `loop`, its `if`; reads of i by the condition, the address and the increment. The initial
-    // value is a constant outside of loops.
+    // A loop counts once: `loop` and the `if` that ends it, the condition and the increment, three reads of i, one
+    // write by the increment; the initial value is a constant outside of loops
     let count = with_body("for (var i = 0u; i < 4u; i++) { words[i] = 1u; }");
     let expected = KernelCost {
-        arithmetic: 3, // i < 4u and its negation or i + 1u
+        arithmetic: 2,
         store: 1,
         private_load: 3,
         private_store: 1,
@@ -51,8 +51,7 @@ fn small_kernels_count_as_by_hand() {
         bindings: 1,
         ..nothing
     };
-    assert_eq!(KernelCost { arithmetic: expected.arithmetic, ..count }, expected);
-    assert!((2..=3).contains(&count.arithmetic), "{count:?}");
+    assert_eq!(count, expected);
     // A function counts once however often it is called
     let called = KernelCost { arithmetic: 1, call: 2, store: 2, other: 2, bindings: 1, ..nothing };
     assert_eq!(with_body("words[0] = twice(3u); words[1] = twice(4u);"), called);
@@ -154,9 +153,10 @@ fn costs_are_the_same_each_time_and_tell_kernels_apart() {
     let costs = kernel_costs().unwrap();
     assert_eq!(costs, kernel_costs().unwrap());
     let of = |kernel: &str, quantity: &str| costs[&format!("sweep {kernel}")][quantity];
-    // Each configuration adds rays, counting adds stores, packets have barriers, stacks have private memory
+    // Shadow rays add arithmetic, counting adds stores, packets have barriers, stacks have private memory
     assert!(of("grid P", "arithmetic") < of("grid PS", "arithmetic"));
-    assert!(of("grid PS", "arithmetic") < of("grid PSR", "arithmetic"));
+    // Bounces are a loop, whose instructions count once
+    assert!(costs["sweep grid PS"] != costs["sweep grid PSR"]);
     assert!(of("grid P", "arithmetic") < of("grid P counting", "arithmetic"));
     assert!(of("bvh P", "barrier") > 0 && of("bvh P", "atomic") > 0 && of("bvh P", "workgroup_bytes") > 0);
     assert_eq!(of("bvh-stack P", "barrier"), 0);
@@ -170,7 +170,7 @@ fn what_is_not_valid_is_located() {
     assert!(problem.starts_with("kernels/it.wgsl:3:") && problem.contains("nothing"), "{problem}");
     // Parsed, but not valid
     let problem = message(&format!("{MAIN}}}\nfn f() -> u32 {{\n if true {{ return 1u; }} }}\n"));
-    assert!(problem.contains("kernels/it.wgsl"), "{problem}");
+    assert!(problem.contains("kernels/it.wgsl:") && problem.contains("return"), "{problem}");
     assert!(message("fn f() {}").contains("main"));
 }
 

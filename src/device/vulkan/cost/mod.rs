@@ -97,9 +97,15 @@ impl Source {
             .map_err(|error| wrong(error.location(&self.text), &error.message()))?;
         let info = Validator::new(ValidationFlags::all(), Capabilities::all())
             .validate(&module)
-            .map_err(|error| wrong(error.location(&self.text), error.as_inner()))?;
+            .map_err(|error| wrong(error.location(&self.text), &with_causes(error.as_inner())))?;
         let main = module.entry_points.iter().position(|entry| entry.name == "main");
         let main = main.ok_or_else(|| wrong(None, &"there is no entry point main"))?;
         Ok(count::count(&module, &info, main))
     }
+}
+
+/// An error's message with those of its causes.
+fn with_causes(error: &dyn std::error::Error) -> String {
+    let causes = std::iter::successors(error.source(), |cause| cause.source());
+    causes.fold(error.to_string(), |text, cause| format!("{text}: {cause}"))
 }

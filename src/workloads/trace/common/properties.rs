@@ -28,7 +28,7 @@ pub struct Properties {
     pub nodes: Option<u32>,
     /// Trees: levels of inner nodes on the longest way from the root to a leaf.
     pub depth: Option<u32>,
-    /// Trees: expected cost of a ray by [`super::sah::CostModel::default`].
+    /// Trees: expected cost of a ray by the default cost model ([`super::sah::CostModel`]).
     pub sah_cost: Option<f64>,
 }
 
