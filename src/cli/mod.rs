@@ -10,8 +10,10 @@ mod claims;
 mod completions;
 mod device;
 mod devices;
+mod env;
 mod figures;
 mod interrupt;
+mod kernels;
 mod library;
 mod merge;
 mod output;
@@ -66,7 +68,9 @@ enum Command {
     #[command(subcommand)]
     CameraPath(camera_path::Command),
     Structures(structures::Arguments),
+    Kernels(kernels::Arguments),
     Devices(devices::Arguments),
+    Env(env::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -119,7 +123,9 @@ fn run(command: Command) -> Result<ExitCode> {
         Command::Scenes(command) => scenes::run(&command).map(done),
         Command::CameraPath(command) => camera_path::run(&command).map(done),
         Command::Structures(arguments) => structures::run(&arguments).map(done),
+        Command::Kernels(arguments) => kernels::run(&arguments).map(done),
         Command::Devices(arguments) => devices::run(&arguments).map(done),
+        Command::Env(arguments) => env::run(&arguments).map(done),
         Command::Completions(arguments) => completions::run(&arguments).map(done),
     }
 }

@@ -1,10 +1,11 @@
 //! Descriptions of devices and kernels, as a run's provenance holds them.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Device kinds. They decide how times may be read and how exactly results must agree with the twins'.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum DeviceType {
     /// The CPU, running this crate's twins of the kernels.
@@ -41,7 +42,7 @@ impl DeviceType {
 }
 
 /// The description of a device in a run's provenance.
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq, JsonSchema)]
 pub struct DeviceInfo {
     /// Adapter name, or the processor's name for the twins.
     pub name: String,
@@ -85,7 +86,7 @@ impl DeviceInfo {
 }
 
 /// The identity of a compiled kernel.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct KernelInfo {
     /// First 16 digits of BLAKE3 of the text's tokens, without constants that only describe the machine: equal for
     /// equal kernels.

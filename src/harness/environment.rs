@@ -1,6 +1,8 @@
 //! The program and the machine, for a run's provenance.
 
-use crate::record::run::{Environment, Program};
+use super::warnings;
+use crate::record::run::{DeviceRecord, Environment, Program};
+use std::path::Path;
 use sysinfo::{CpuRefreshKind, MemoryRefreshKind, RefreshKind, System};
 
 /// Beginnings of the names of environment variables that change what is measured: the software rasteriser's and the
@@ -26,14 +28,14 @@ pub fn load_average() -> [f64; 3] {
     System::load_average().map(|load| [load.one, load.five, load.fifteen]).unwrap_or_default()
 }
 
-/// Describes the machine.
-pub fn capture() -> Environment {
+/// Describes the machine, and what of it, the program and the devices spoils times.
+pub fn capture(program: &Program, devices: &[DeviceRecord]) -> Environment {
     let kinds =
         RefreshKind::nothing().with_cpu(CpuRefreshKind::nothing()).with_memory(MemoryRefreshKind::nothing().with_ram());
     let system = System::new_with_specifics(kinds).ok();
     let cpu = system.as_ref().and_then(|s| s.cpus().first().map(|c| c.brand().trim().to_owned()));
     let governor = std::fs::read_to_string("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor").ok();
-    Environment {
+    let mut environment = Environment {
         os: System::long_os_version().unwrap_or_else(|_| std::env::consts::OS.into()),
         kernel: System::kernel_version().unwrap_or_default(),
         architecture: std::env::consts::ARCH.into(),
@@ -47,7 +49,11 @@ pub fn capture() -> Environment {
             .filter_map(|(name, value)| Some((name.into_string().ok()?, value.to_string_lossy().into_owned())))
             .filter(|(name, _)| VARIABLES.iter().any(|start| name.starts_with(start)))
             .collect(),
-    }
+        warnings: Vec::new(),
+    };
+    let found = warnings::find(program, &environment, devices, Path::new("/"));
+    environment.warnings = found.iter().map(ToString::to_string).collect();
+    environment
 }
 
 /// Describes the program, from what `build/main.rs` found.

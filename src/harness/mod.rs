@@ -13,6 +13,7 @@ pub mod run;
 pub mod shard;
 pub mod summary;
 mod turns;
+pub mod warnings;
 pub mod workload;
 
 pub use order::order;

@@ -73,15 +73,17 @@ impl Outcome {
 /// that does not come back.
 pub fn run(mut job: Job) -> Result<Outcome> {
     let record = |opened: &Opened| DeviceRecord { info: opened.device.info().clone(), reason: opened.reason.clone() };
+    let program = environment::program();
+    let devices: Vec<DeviceRecord> = job.devices.iter().map(record).collect();
     let provenance = Provenance {
         schema: SCHEMA.into(),
         id: String::new(),
         workload: job.workload.info().name.into(),
-        program: environment::program(),
         started: environment::now(),
         arguments: job.arguments,
-        devices: job.devices.iter().map(record).collect(),
-        environment: environment::capture(),
+        environment: environment::capture(&program, &devices),
+        program,
+        devices,
         plan: job.plan.record(),
         merged: Vec::new(),
     }

@@ -7,11 +7,11 @@ use super::workload::Workload;
 use crate::device::DeviceType;
 use crate::error::{Error, Result};
 use crate::record::files;
-use crate::record::journal::Journal;
+use crate::record::journal::{Journal, RunDocument};
 use crate::record::row::{Row, Samples, Status, TimingSource, Value};
 use crate::record::statistics;
 use crate::record::terminal;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
 /// Columns of every workload, after its axes.
@@ -85,13 +85,10 @@ impl Wide {
         writer.into_inner().map_err(|e| Error::output(Path::new("CSV"), e.into_error()))
     }
 
-    /// As a list of JSON objects, null where there is no value.
-    pub fn json(&self) -> serde_json::Value {
-        let object = |row: &Vec<Option<Value>>| {
-            let cells = self.columns.iter().zip(row);
-            cells.map(|(column, value)| (column.clone(), serde_json::json!(value))).collect::<serde_json::Map<_, _>>()
-        };
-        self.rows.iter().map(|row| serde_json::Value::Object(object(row))).collect()
+    /// The values of each row by column; `None` where there is no value.
+    fn objects(&self) -> Vec<BTreeMap<String, Option<Value>>> {
+        let object = |row: &Vec<Option<Value>>| self.columns.iter().cloned().zip(row.iter().cloned()).collect();
+        self.rows.iter().map(object).collect()
     }
 }
 
@@ -241,15 +238,9 @@ pub fn write(workload: &dyn Workload, journal: &Journal, folder: &Path) -> Resul
         files::replace(&folder.join(name), &content)?;
     }
     let path = folder.join("run.json");
-    let json = serde_json::json!({
-        "run": journal.provenance,
-        "inputs": journal.inputs,
-        "artifacts": journal.artifacts,
-        "rows": wide.json(),
-        "resumed": journal.resumed,
-        "end": journal.end,
-    });
-    let mut bytes = serde_json::to_vec_pretty(&json).map_err(|e| Error::output(&path, e.into()))?;
+    let failed = |e: serde_json::Error| Error::output(&path, e.into());
+    let json = serde_json::to_value(RunDocument::new(journal, wide.objects())).map_err(failed)?;
+    let mut bytes = serde_json::to_vec_pretty(&json).map_err(failed)?;
     bytes.push(b'\n');
     files::replace(&path, &bytes)
 }

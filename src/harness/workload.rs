@@ -1,7 +1,7 @@
 //! What a workload is to the harness. A workload says what can vary, what its inputs are, and how one case is prepared,
 //! verified, counted and run; the harness alone owns the order, the clock, and what is recorded.
 
-use crate::device::{Device, FrameTime, KernelInfo};
+use crate::device::{Device, FrameTime, KernelInfo, Source};
 use crate::error::Result;
 use crate::record::journal::Journal;
 use crate::record::row::{Artifact, Check, Input as InputRecord, Key, Metric, Row, Settings};
@@ -38,6 +38,16 @@ pub trait Workload: Sync {
     /// # Errors
     /// [`crate::Error::Input`] of a file.
     fn open<'a>(&'a self, cases: &[Case], context: &'a Context<'a>) -> Result<Box<dyn Input + 'a>>;
+
+    /// The kernels that its registered algorithms run on a GPU when no option is given, each with a name that no other
+    /// one of the workload has: their static cost is compared from version to version. Empty for a workload without
+    /// kernels.
+    ///
+    /// # Errors
+    /// [`crate::Error::Device`] with file and line for a kernel that cannot be assembled (a mistake in `kernels/`).
+    fn kernels(&self) -> Result<Vec<(String, Source)>> {
+        Ok(Vec::new())
+    }
 
     /// Values that follow from a row's metrics and its frame times, for the columns of `summary.csv`.
     fn derived(&self, _row: &Row, _frames: Option<&FrameStatistics>) -> Vec<Metric> {

@@ -1,12 +1,13 @@
 //! The journal of a run: append-only, one JSON record per line, on disk as soon as it is written.
 
-use super::row::{Artifact, Input, Key, Row, SCHEMA, Status};
+use super::row::{Artifact, Input, Key, Row, SCHEMA, Status, Value};
 use super::run::{End, Provenance, Resumed};
 use crate::error::{Error, Result};
 use crate::guard;
 use crate::record::files;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
@@ -26,7 +27,7 @@ pub fn folder_of(run: &Path) -> PathBuf {
 }
 
 /// One line of a journal.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "record", rename_all = "kebab-case")]
 pub enum Record {
     /// Where the run comes from: always the first line.
@@ -186,6 +187,31 @@ pub struct Journal {
     pub truncated: Option<String>,
     /// Bytes of the file.
     pub length: u64,
+}
+
+/// `run.json`: a journal as one document, with rows as in `summary.csv`.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct RunDocument<'j> {
+    /// Where the run comes from.
+    pub run: &'j Provenance,
+    /// In the order in which they were opened.
+    pub inputs: &'j [Input],
+    /// In the order in which they were built.
+    pub artifacts: &'j [Artifact],
+    /// A value for each column; null where a column has no meaning for a row.
+    pub rows: Vec<BTreeMap<String, Option<Value>>>,
+    /// Each time that the run was resumed.
+    pub resumed: &'j [Resumed],
+    /// How it ended; null where the process was killed.
+    pub end: &'j Option<End>,
+}
+
+impl<'j> RunDocument<'j> {
+    /// The document of a journal with its rows by column.
+    pub fn new(journal: &'j Journal, rows: Vec<BTreeMap<String, Option<Value>>>) -> RunDocument<'j> {
+        let Journal { provenance: run, inputs, artifacts, resumed, end, .. } = journal;
+        RunDocument { run, inputs, artifacts, rows, resumed, end }
+    }
 }
 
 /// The bytes of a run's journal.

@@ -9,5 +9,6 @@ pub mod merge;
 pub mod picture;
 pub mod row;
 pub mod run;
+pub mod schema;
 pub mod statistics;
 pub mod terminal;

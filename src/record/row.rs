@@ -5,6 +5,7 @@
 //! nothing else. Settings are next to the key and must be equal where rows are joined.
 
 use crate::device::KernelInfo;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -12,7 +13,7 @@ use std::collections::BTreeMap;
 pub const SCHEMA: &str = "rtbench/2";
 
 /// What was asked for. Two rows with equal keys are measurements of the same.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 pub struct Key {
     /// Name of the workload.
     pub workload: String,
@@ -35,7 +36,7 @@ impl Key {
 }
 
 /// How a run measures: equal for all of its rows, and for all rows that are compared.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 pub struct Settings {
     /// Timed passes over all frames.
     pub passes: usize,
@@ -48,7 +49,7 @@ pub struct Settings {
 }
 
 /// A number or a word that belongs to a row, an input or an artifact.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Metric {
     /// Name, with the unit at its end where it has one.
     pub name: String,
@@ -60,7 +61,7 @@ pub struct Metric {
 }
 
 /// The value of a [`Metric`]. Integers stay integers.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Value {
     /// Yes or no.
@@ -171,7 +172,7 @@ pub fn metric<'m>(metrics: &'m [Metric], of: Option<&str>, name: &str) -> Option
 }
 
 /// Something that rows were measured on, such as a scene or a camera path.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Input {
     /// What it is: the name of an entry of [`Key::inputs`].
     pub kind: String,
@@ -184,7 +185,7 @@ pub struct Input {
 }
 
 /// Something that was built for rows, such as an acceleration structure.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Artifact {
     /// The axes and inputs that it depends on.
     pub key: Key,
@@ -196,7 +197,7 @@ pub struct Artifact {
 }
 
 /// Whether a row has a result.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Status {
     /// Verified and timed.
@@ -227,7 +228,7 @@ impl Status {
 }
 
 /// Which clock gave the frame times.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum TimingSource {
     /// The device's timestamps.
@@ -237,7 +238,7 @@ pub enum TimingSource {
 }
 
 /// One comparison of an answer with a reference.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Check {
     /// True if everything agrees within the stated limits.
     pub ok: bool,
@@ -248,7 +249,7 @@ pub struct Check {
 }
 
 /// All timed frames: whole nanoseconds, `[pass][frame]`.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Samples {
     /// Labels of the stages of a frame; absent where a frame is one stage.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -265,7 +266,7 @@ pub struct Samples {
 }
 
 /// A case that was measured, or the reason why it was not.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Row {
     /// What was asked for.
     pub key: Key,

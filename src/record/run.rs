@@ -2,13 +2,15 @@
 
 use super::row::Settings;
 use crate::device::DeviceInfo;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Everything that one has to know to believe, repeat or refuse a run's numbers.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Provenance {
     /// [`super::row::SCHEMA`].
+    #[schemars(description = "Version of the schema.", extend("const" = super::row::SCHEMA))]
     pub schema: String,
     /// Tells this run apart from others: 16 hexadecimal digits.
     pub id: String,
@@ -84,7 +86,7 @@ impl Provenance {
 }
 
 /// A device of a run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DeviceRecord {
     /// The device, its driver, features and limits.
     #[serde(flatten)]
@@ -94,7 +96,7 @@ pub struct DeviceRecord {
 }
 
 /// How the program was made.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Program {
     /// Crate version.
     pub version: String,
@@ -119,7 +121,7 @@ pub struct Program {
 }
 
 /// The machine, at the start of a run.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Environment {
     /// Operating system and its version.
     pub os: String,
@@ -141,6 +143,9 @@ pub struct Environment {
     pub load_average: [f64; 3],
     /// Variables that change what is measured (`LP_NUM_THREADS`, `VK_*`, ...).
     pub variables: BTreeMap<String, String>,
+    /// What spoils times, each with what to do; absent where nothing is known to.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
 }
 
 impl Environment {
@@ -151,7 +156,7 @@ impl Environment {
 }
 
 /// A run that is resumed, by the same program on the same devices.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Resumed {
     /// Start, UTC, RFC 3339.
     pub started: String,
@@ -162,7 +167,7 @@ pub struct Resumed {
 }
 
 /// What was to be measured.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PlanRecord {
     /// The preset that the plan began with.
     pub preset: String,
@@ -196,7 +201,7 @@ impl PlanRecord {
 }
 
 /// How a run ended.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct End {
     /// UTC, RFC 3339.
     pub ended: String,

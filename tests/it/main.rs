@@ -6,10 +6,13 @@ mod camera; // camera paths: files, thinning, fitting, errors
 mod cli; // the program as a user runs it: outputs, exit codes, broken input
 mod compare; // pairs, judgements and statistics against known answers
 mod device; // frames of several passes, indirect dispatch, textures, features
+mod documents; // examples of YAML, TOML and JSON in documents parse
+mod environment; // what spoils times is found in fake system files
 mod exact; // the ray/triangle test against exact arithmetic
 mod fakes; // records with known content, a device that breaks on demand
 mod files; // names of files of all kinds, and what must not be written over
 mod identities; // hashes of kernels and readers do not depend on comments
+mod kernel_costs; // the static cost of kernels by hand, and that none is left out
 mod kernels; // every kernel variant through naga, struct layouts, no GPU
 mod language; // comments and documents are at most 120 columns wide
 mod many; // shards, merged runs, runs that are killed and resumed
@@ -18,6 +21,7 @@ mod reference; // rays traced by Embree (needs RTBENCH_SCENES)
 mod report; // tables of any source in every format, parts of documents
 mod results; // journal, CSV and JSON agree; statistics; rays and hits
 mod scene; // readers and what breaks them, memory while loading, caches, procedural scenes, the catalogue
+mod schema; // JSON Schema of journals and run.json against the types and real files
 mod sources; // published numbers; tables, claims, figures and report from records
 mod support; // small scenes, random numbers, the GPU if there is one
 mod sweep; // the sweep loop on a device that breaks, presets, the plan

@@ -177,6 +177,11 @@ fn measured(workload: &Sums, folder: &std::path::Path, rows: usize) -> (Result<O
     (outcome, finished.get())
 }
 
+/// A whole run of it in a folder.
+pub fn small_run(folder: &std::path::Path) {
+    measured(&Sums::default(), folder, usize::MAX).0.unwrap();
+}
+
 #[test]
 fn a_workload_is_a_few_functions() {
     let (workload, folder) = (Sums::default(), tempfile::tempdir().unwrap());

@@ -4,6 +4,7 @@
 mod adapters;
 mod binding;
 mod buffers;
+mod cost;
 mod device;
 mod pipeline;
 mod read_buffer;
@@ -12,6 +13,7 @@ mod run;
 pub use adapters::{Adapter, Selector, WANTED, adapters, choose, fitting};
 pub use binding::{Binding, BindingKind, Pipeline, Texel};
 pub use buffers::Buffer;
+pub use cost::KernelCost;
 pub use device::{VulkanDevice, VulkanOptions};
 pub use pipeline::{Bindings, PipelineDescription, Resource};
 pub use read_buffer::{ReadBuffer, TEXTURE_WIDTH, Texture};

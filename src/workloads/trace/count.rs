@@ -2,6 +2,7 @@
 //! and timed kernels include, are made from it.
 
 use bytemuck::{Pod, Zeroable};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 
@@ -16,7 +17,7 @@ macro_rules! counters {
         }
 
         /// Counters of one ray type, summed over a path.
-        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
         pub struct CounterSums {
             $($(#[doc = $meaning])+ pub $field: u64,)+
         }

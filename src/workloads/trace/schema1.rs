@@ -6,6 +6,9 @@ use crate::error::{Error, Result};
 use crate::record::journal::{self, Journal};
 use crate::record::row::{Input, Row, Settings};
 use crate::record::run::{DeviceRecord, End, Environment, PlanRecord, Program, Provenance, Resumed};
+use crate::record::schema;
+use schemars::JsonSchema;
+use schemars::generate::SchemaSettings;
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::HashMap;
@@ -20,6 +23,17 @@ pub const SCHEMA: &str = "rtbench/1";
 /// [`Error::Input`] with file and line for anything that is neither.
 pub fn read(path: &Path) -> Result<Journal> {
     parse(path, &journal::bytes_of(path)?)
+}
+
+/// The JSON Schema of a line of such a journal. Rows without a result have the status `error` there.
+pub fn json_schema() -> Value {
+    let title = "A line of an rtbench journal (journal.jsonl), schema rtbench/1";
+    let mut schema = schema::of::<Line>(title, SchemaSettings::draft2020_12().for_deserialize());
+    if let Some(statuses) = schema.pointer_mut("/$defs/Status/oneOf").and_then(Value::as_array_mut) {
+        let error = "The row has no result; `failure` tells why.";
+        statuses.push(serde_json::json!({ "type": "string", "const": "error", "description": error }));
+    }
+    schema
 }
 
 /// Parses the bytes of a journal of either schema; `path` is for messages.
@@ -91,7 +105,7 @@ fn put(journal: &mut Journal, known: &mut HashMap<crate::record::row::Key, usize
     }
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(tag = "record", rename_all = "kebab-case")]
 enum Line {
     Run(Box<Run>),
@@ -111,8 +125,11 @@ fn line(bytes: &[u8]) -> serde_json::Result<Line> {
     serde_json::from_value(value)
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 struct Run {
+    #[allow(dead_code)] // decided before; the schema of files tells it
+    #[schemars(extend("const" = SCHEMA))]
+    schema: String,
     program: Program,
     started: String,
     arguments: Vec<String>,
@@ -122,7 +139,7 @@ struct Run {
     plan: Plan,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 struct Plan {
     preset: String,
     scenes: Vec<String>,

@@ -1,12 +1,14 @@
 //! Ray tracing as a workload: its axes, and its plan.
 
 use super::case::TraceCase;
+use super::gpu::kernels;
 use super::input::TraceInput;
 use super::rays::{self, Config};
 use super::record::{RAY_TYPES, WORKLOAD, variant_of};
 use super::tracer::Decorate;
 use super::{Selection, artifacts};
 use crate::camera::CameraPath;
+use crate::device::Source;
 use crate::error::{Error, Result};
 use crate::harness::parse_list;
 use crate::harness::workload::{Axis, Case, Context, Info, Input, Library, Part, Workload};
@@ -200,6 +202,10 @@ impl Workload for Trace {
 
     fn open<'a>(&'a self, cases: &[Case], context: &'a Context<'a>) -> Result<Box<dyn Input + 'a>> {
         Ok(Box::new(TraceInput::open(cases, context, self.decorate.as_deref())?))
+    }
+
+    fn kernels(&self) -> Result<Vec<(String, Source)>> {
+        kernels::defaults()
     }
 
     fn derived(&self, row: &Row, frames: Option<&FrameStatistics>) -> Vec<Metric> {

@@ -28,11 +28,6 @@ const VARIANTS: u64 = 300;
 /// Number of variants of each file in [`OWN`], unless RTBENCH_VARIANTS sets another.
 const OWN_VARIANTS: u64 = 2000;
 
-fn own_variants() -> u64 {
-    let number = std::env::var("RTBENCH_VARIANTS").ok();
-    number.map_or(OWN_VARIANTS, |number| number.parse().expect("RTBENCH_VARIANTS is a number"))
-}
-
 /// Small files with all features, which are tested even without the fixtures.
 const OWN: [(&str, &str); 6] = [
     ("all.aff", include_str!("../../data/all.aff")),

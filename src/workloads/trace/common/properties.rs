@@ -2,10 +2,11 @@
 
 use crate::scene::Scene;
 use crate::workloads::trace::TriangleRef;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Properties of a built structure; `None` where a property has no meaning for it.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Properties {
     /// Grid: cells on x.
     pub cells_x: Option<u32>,
@@ -27,7 +28,7 @@ pub struct Properties {
     pub nodes: Option<u32>,
     /// Trees: levels of inner nodes on the longest way from the root to a leaf.
     pub depth: Option<u32>,
-    /// Trees: expected cost of a ray by [`super::sah::CostModel::default`].
+    /// Trees: expected cost of a ray by the default cost model ([`super::sah::CostModel`]).
     pub sah_cost: Option<f64>,
 }
 

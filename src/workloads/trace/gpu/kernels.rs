@@ -2,6 +2,7 @@
 
 use crate::device::vulkan::{Binding, BindingKind, ReadBuffer, TEXTURE_WIDTH, Texel};
 use crate::device::{Constants, KernelFile, Source, assemble};
+use crate::error::{Error, Result};
 use crate::math;
 use crate::workloads::trace::backend::Config;
 use crate::workloads::trace::intersect::{TriangleTest, moller_trumbore};
@@ -57,6 +58,16 @@ pub struct Kernel {
     pub textures: bool,
 }
 
+impl Entry {
+    /// A name for labels and messages.
+    fn label(self) -> String {
+        match self {
+            Entry::Render { config, counting } => format!("{config:?}{}", if counting { " counting" } else { "" }),
+            Entry::Trace { any_hit } => format!("trace{}", if any_hit { " any hit" } else { "" }),
+        }
+    }
+}
+
 /// Stack entries for a tree of `depth` levels and the EMPTY at the bottom: a multiple of 32, so that few different
 /// kernels are compiled.
 pub fn stack_size(depth: u32) -> u32 {
@@ -67,12 +78,7 @@ impl Kernel {
     /// A name for labels and messages.
     pub fn label(&self) -> String {
         let traversal = self.method.traversal.kernel.trim_start_matches("trace/").trim_end_matches(".wgsl");
-        match self.entry {
-            Entry::Render { config, counting } => {
-                format!("{traversal} {config:?}{}", if counting { " counting" } else { "" })
-            }
-            Entry::Trace { any_hit } => format!("{traversal} trace{}", if any_hit { " any hit" } else { "" }),
-        }
+        format!("{traversal} {}", self.entry.label())
     }
 
     /// The WGSL of this variant.
@@ -175,12 +181,41 @@ pub fn methods() -> Vec<Method> {
     methods
 }
 
-/// All variants that the program can run, with a stack of 32, for the static checks.
-pub fn all() -> Vec<Kernel> {
+/// Every entry file with every set of its constants.
+fn entries() -> Vec<Entry> {
     let mut entries: Vec<Entry> = [false, true].map(|any_hit| Entry::Trace { any_hit }).to_vec();
     for config in Config::ALL {
         entries.extend([false, true].map(|counting| Entry::Render { config, counting }));
     }
+    entries
+}
+
+/// The kernels of every algorithm without options on a GPU, with a stack of 32: the algorithm's name and the entry, and
+/// the text. Of algorithms that differ only in their builders the first one is listed.
+///
+/// # Errors
+/// [`crate::Error::Device`] with file and line for an include that does not exist (a mistake in `kernels/`).
+pub fn defaults() -> Result<Vec<(String, Source)>> {
+    let mut methods: Vec<Method> = Vec::new();
+    let mut defaults = Vec::new();
+    for algorithm in algorithms() {
+        let method = Selection::parse(algorithm.name)?.method();
+        if methods.contains(&method) {
+            continue;
+        }
+        methods.push(method);
+        for entry in entries() {
+            let kernel = Kernel { entry, method, stack_size: 32, software_threads: 0, textures: false };
+            let source = kernel.assemble().map_err(Error::Device)?;
+            defaults.push((format!("{} {}", algorithm.name, entry.label()), source));
+        }
+    }
+    Ok(defaults)
+}
+
+/// All variants that the program can run, with a stack of 32, for the static checks.
+pub fn all() -> Vec<Kernel> {
+    let entries = entries();
     let mut all = Vec::new();
     for method in methods() {
         for &entry in &entries {

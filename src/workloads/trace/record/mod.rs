@@ -17,6 +17,7 @@ use crate::record::journal::Record;
 use crate::record::row::{Input, Key, Row, Samples, Settings, Status, TimingSource};
 use crate::record::run::{End, Provenance, Resumed};
 use crate::record::statistics::{self, FrameStatistics, round};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Name of the workload in keys.
@@ -26,7 +27,7 @@ pub const WORKLOAD: &str = "sweep";
 pub const RAY_TYPES: [&str; 3] = ["primary", "shadow", "reflected"];
 
 /// A scene.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SceneRecord {
     /// Short name.
     pub name: String,
@@ -48,7 +49,7 @@ pub struct SceneRecord {
 }
 
 /// What leads from a scene's file to memory: `(file - offset) * 2^exponent`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PlacementRecord {
     /// The point of the file that is the origin.
     pub offset: [f64; 3],
@@ -57,7 +58,7 @@ pub struct PlacementRecord {
 }
 
 /// A structure that was built.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StructureRecord {
     /// Of this scene.
     pub scene: SceneRecord,
@@ -79,7 +80,7 @@ pub struct StructureRecord {
 }
 
 /// Sizes in bytes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Memory {
     /// Nodes or cells, and triangle references: as allocated on the device, or in main memory where it was not
     /// uploaded.
@@ -91,7 +92,7 @@ pub struct Memory {
 }
 
 /// A camera path.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PathRecord {
     /// Name.
     pub name: String,
@@ -100,7 +101,7 @@ pub struct PathRecord {
 }
 
 /// One comparison with the reference.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Verification {
     /// Frame of the (thinned) path.
     pub frame: usize,
@@ -134,7 +135,7 @@ pub struct Verification {
 }
 
 /// A row of ray tracing.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ConfigurationRecord {
     /// Scene.
     pub scene: SceneRecord,
