@@ -68,6 +68,14 @@ impl Plan {
         let preset = Preset::load(info, request.preset.as_deref().unwrap_or(first_preset))?;
         let mut absent = Vec::new();
         let parts = chosen(workload, &preset, request, &mut absent);
+        if let (Some(shard), Some(first)) = (request.shard, absent.first()) {
+            let problem = format!("shard {shard} needs every machine to have all inputs: {first}");
+            return Err(Error::argument(
+                "--shard",
+                problem,
+                "bring it to this machine, or leave it out on all machines",
+            ));
+        }
         if parts.is_empty() {
             let subject = info.axes.first().map_or("", |axis| axis.name);
             let problem = format!("nothing of preset {} is here: {}", preset.name, absent.join("; "));
@@ -82,14 +90,6 @@ impl Plan {
         in_range("--passes", settings.passes, 1)?;
         in_range("--warmup", settings.warmup_frames, 0)?;
         in_range("builds", settings.builds, 1)?;
-        if let (Some(shard), Some(first)) = (request.shard, absent.first()) {
-            let problem = format!("shard {shard} needs every machine to have all inputs: {first}");
-            return Err(Error::argument(
-                "--shard",
-                problem,
-                "bring it to this machine, or leave it out on all machines",
-            ));
-        }
         let mut whole: Vec<Case> = Vec::new();
         let mut known: HashMap<(Vec<(String, String)>, usize), usize> = HashMap::new();
         let mut shorter = 0;
