@@ -34,7 +34,7 @@ pub struct Provenance {
 }
 
 /// A run that was merged into another one.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MergedRun {
     /// Its id.
     pub id: String,
@@ -52,7 +52,7 @@ pub struct MergedRun {
 }
 
 /// A part of a plan.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 pub struct Shard {
     /// Which one, from 1 to `count`.
     pub index: usize,
