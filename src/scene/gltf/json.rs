@@ -223,17 +223,12 @@ impl<'de> Deserialize<'de> for Indices {
 }
 
 /// A value that concerns no geometry, so that one of another type is not an error.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Loose<T> {
+    #[default]
     Absent,
     Given(T),
     Malformed,
-}
-
-impl<T> Default for Loose<T> {
-    fn default() -> Loose<T> {
-        Loose::Absent
-    }
 }
 
 impl<T> Loose<T> {
