@@ -68,8 +68,8 @@ pub fn characters(json: &[u8]) -> Result<Cow<'_, str>, Fault> {
     Ok(String::from_utf8_lossy(&json[..end]))
 }
 
-/// The JSON with `null` in place of numbers that JSON does not have, such as NaN in bounds; `None` if it has none. Lines
-/// keep their numbers.
+/// The JSON with `null` in place of numbers that JSON does not have, such as NaN in bounds; `None` if it has none.
+/// Lines keep their numbers.
 pub fn without_nan(text: &str) -> Option<String> {
     const NONE: [&str; 6] = ["-Infinity", "Infinity", "-NaN", "NaN", "-nan", "nan"];
     let (mut result, mut kept, mut at) = (String::new(), 0, 0);

@@ -63,7 +63,13 @@ pub fn check<'a>(json: Json<'a>, root: &Root<'a>) -> Result<Vec<String>, Fault> 
         return Err(Fault::new(None, problem, UNPACK));
     }
     let mut unknown = Vec::new();
-    let listed = json.list("extensionsUsed", "extension", root.extensions_used)?;
+    let listed = match json.list("extensionsUsed", "extension", root.extensions_used) {
+        Ok(listed) => listed,
+        Err(fault) => {
+            warnings.push(format!("{}: ignored", fault.problem));
+            return Ok(warnings);
+        }
+    };
     for index in 0..listed.len() {
         let Loose::Given(Text(name)) = listed.get(index, "")? else { continue };
         let known = [&READ[..], &HARMLESS, &WITH_FALLBACK].iter().any(|list| list.contains(&&*name));

@@ -98,8 +98,8 @@ impl<'a> List<'a> {
         self.starts.len()
     }
 
-    /// Parses an element; `None` if it does not exist or has another type. In contrast to [`List::get`], a failure costs
-    /// no time.
+    /// Parses an element; `None` if it does not exist or has another type. In contrast to [`List::get`], a failure
+    /// costs no time.
     pub fn parse<T: Deserialize<'a>>(&self, index: usize) -> Option<T> {
         let start = self.first + *self.starts.get(index)? as usize;
         T::deserialize(&mut serde_json::Deserializer::from_str(&self.json.text[start..])).ok()
@@ -223,17 +223,12 @@ impl<'de> Deserialize<'de> for Indices {
 }
 
 /// A value that concerns no geometry, so that one of another type is not an error.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Loose<T> {
+    #[default]
     Absent,
     Given(T),
     Malformed,
-}
-
-impl<T> Default for Loose<T> {
-    fn default() -> Loose<T> {
-        Loose::Absent
-    }
 }
 
 impl<T> Loose<T> {

@@ -381,6 +381,10 @@ fn other_extensions_are_refused_or_named() {
         ]
     );
     assert!(told(json!(["KHR_draco_mesh_compression", "EXT_structural_metadata", true, null])).is_empty());
+    assert_eq!(told(json!("one")), ["extensionsUsed: invalid type: string \"one\", expected an array: ignored"]);
+    assert!(
+        refusal(try_load(&with(&[("/extensionsRequired", json!({}))]))).contains("extensionsRequired: invalid type")
+    );
     // Compressed geometry with a fallback is read, without one it is refused.
     let draco = json!({ "KHR_draco_mesh_compression": { "bufferView": 0, "attributes": {} } });
     let mut fallback = with(&[("/meshes/0/primitives/0/extensions", draco)]);

@@ -1,6 +1,7 @@
 //! Tests of the readers with thousands of mutated variants of every fixture, which are deterministic. Each variant is
 //! read or refused with one line; none panics, none hangs, and none takes more memory than sixteen times its file and
-//! 64 MiB: what a file may repeat is limited by the option `memory=64M`. RTBENCH_VARIANTS sets another number of variants.
+//! 64 MiB: what a file may repeat is limited by the option `memory=64M`. RTBENCH_VARIANTS sets another number of
+//! variants.
 
 mod bombs;
 mod guard;
