@@ -220,8 +220,8 @@ impl State<'static> {
     }
 }
 
-/// The list in a field that is not geometry; `before` if it is empty or ignored (`~`), `default` if the field is absent or
-/// has an error, which is added to `faults`.
+/// The list in a field that is not geometry; `before` if it is empty or ignored (`~`), `default` if the field is absent
+/// or has an error, which is added to `faults`.
 fn list<'t>(
     node: &'t Node,
     name: &str,

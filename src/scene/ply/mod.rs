@@ -6,8 +6,8 @@
 //! every count with the remaining bytes before it allocates memory.
 //!
 //! The reader supports x, y, z of the vertices; nx, ny, nz if all three exist (otherwise smooth normals are computed,
-//! see [`crate::scene::normals`]); `vertex_indices` or `vertex_index` of the faces; and triangle strips. [`super::polygon`]
-//! triangulates polygons. All other properties and elements are ignored.
+//! see [`crate::scene::normals`]); `vertex_indices` or `vertex_index` of the faces; and triangle strips.
+//! [`super::polygon`] triangulates polygons. All other properties and elements are ignored.
 
 mod ascii;
 mod body;
