@@ -18,7 +18,7 @@ fn each_error_has_its_line() {
         ("l 0 1e99 0", &[":1: a light at"]),
         ("\n\nsphere 0 0 0 1", &[":3: `sphere` is not an entity"]),
         ("f 1 0 0\nhex 0 0 0", &[":2: `hex` is not an entity"]),
-        ("f 1 0\nhex 0 0 0", &[":2: f: `hex` is not a number"]),
+        ("f 1 0\nhex 0 0 0", &[":2: `hex` is not an entity"]),
         ("p 1000000000 0 0 0", &[":1: p: 1000000000 do not fit into the remaining 6 bytes"]),
         ("p -3 0 0 0", &[":1: p: -3 is negative"]),
         ("p 3.5 0 0 0", &[":1: p: `3.5` is not a whole number"]),
