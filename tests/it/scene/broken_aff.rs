@@ -29,7 +29,6 @@ fn each_error_has_its_line() {
         ("m vertices 1 0 0 0 triangles 1 0 0 1", &[":1: m: index 1 is out of range (give 0 to 0)"]),
         ("m vertices 1 0 0 0 triangles 1 0 0 -1", &["index -1 is out of range"]),
         ("m vertices 0 triangles 1 0 0 0", &["index 0 is out of range (there are none)"]),
-        ("m vertices 1 0 0 0 normals 1 0 0 1 triangles 1 0 0 0 0 0 7", &["there is no triangle"; 0]),
         ("m vertices 1 0 0 0 faces 1 0 0 0", &["`faces` is not a part of a mesh", "texturecoords"]),
         ("m points 1 0 0 0", &["m needs `vertices` here"]),
         ("s 0 0 0 1\n}", &[":2: `}` closes no transform"]),
