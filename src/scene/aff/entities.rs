@@ -190,19 +190,23 @@ impl AffReader {
     }
 
     /// Reads the parameters of `f`: colour, Kd, Ks, exponent, transparency, index of refraction, and optionally the
-    /// name of a texture on the same line. All after the colour may be missing, with a warning.
+    /// name of a texture on the same line. Some may be missing, with a warning.
     fn plain_material(&mut self, path: &Path, tokens: &mut Tokenizer) -> Result<(), Fault> {
-        let colour = self.colour("f", GREY, path, tokens)?;
-        let (mut properties, mut given) = (FILL, 0);
+        let (mut numbers, mut given) = (FILL, 0);
         while given < FILL.len() && tokens.peek().is_some_and(|word| odd::value(word).is_some()) {
-            properties[given] = self.property("f", FILL[given], path, tokens)?;
+            numbers[given] = tokens.any_number("f")?;
             given += 1;
         }
         if given < FILL.len() {
-            let text = format!("f: {} numbers instead of 8: the others have their defaults", 3 + given);
-            self.warn(path, tokens, &text);
+            self.warn(path, tokens, &format!("f: {given} numbers instead of 8: the others have their defaults"));
         }
-        let [diffuse, specular, exponent, transparency, _index] = properties;
+        if numbers.iter().any(|number| !number.is_finite()) {
+            self.warn(path, tokens, "f: a number is not finite: its default is used");
+        }
+        let grey = given < 3 || numbers[..3].iter().any(|number| !number.is_finite());
+        let colour = if grey { GREY } else { DVec3::from_slice(&numbers) };
+        let or_default = |i: usize| if numbers[i].is_finite() { numbers[i] } else { FILL[i] };
+        let [diffuse, specular, exponent, transparency] = [3, 4, 5, 6].map(or_default);
         if tokens.peek_on_line().is_some_and(|word| word.contains(&b'.')) {
             tokens.skip(1, "f")?;
             self.texture();
@@ -220,10 +224,9 @@ impl AffReader {
         let ambient = self.colour("fm", GREY * 0.1, path, tokens)? * self.ambient;
         let diffuse = self.colour("fm", GREY, path, tokens)?;
         let specular = self.colour("fm", DVec3::ZERO, path, tokens)?;
-        let [_, _, exponent, transparency, index] = FILL;
-        let exponent = self.property("fm", exponent, path, tokens)?;
-        let transparency = self.property("fm", transparency, path, tokens)?;
-        self.property("fm", index, path, tokens)?;
+        let exponent = self.property("fm", FILL[5], path, tokens)?;
+        let transparency = self.property("fm", FILL[6], path, tokens)?;
+        self.property("fm", FILL[7], path, tokens)?;
         let luminance = specular.dot(LUMINANCE).clamp(0.0, 1.0) as f32;
         let material = Material { ambient: ambient.as_vec3(), diffuse: diffuse.as_vec3(), ..Material::neutral() };
         self.set_material(material.shiny(specular.as_vec3(), exponent as f32, luminance), transparency);
@@ -250,8 +253,8 @@ impl AffReader {
 /// The colour of a material whose colour is not finite.
 const GREY: DVec3 = DVec3::splat(0.7);
 
-/// The defaults of `f` after its colour: Kd, Ks, exponent, transparency, index of refraction.
-const FILL: [f64; 5] = [1.0, 0.0, 10.0, 0.0, 1.0];
+/// The defaults of `f`: red, green, blue, Kd, Ks, exponent, transparency, index of refraction.
+const FILL: [f64; 8] = [GREY.x, GREY.y, GREY.z, 1.0, 0.0, 10.0, 0.0, 1.0];
 
 /// Weights of linear red, green and blue in the luminance (Rec. 709).
 const LUMINANCE: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);

@@ -221,8 +221,8 @@ impl<'a> Parser<'a, '_> {
                     }
                 }
             }
-            _ if is_number(first) && list.begins(first) => {
-                while let Some(word) = self.tokens.peek().filter(|word| is_number(word)) {
+            _ if list.begins(first) => {
+                while let Some(word) = self.tokens.peek().filter(|word| list.continues(word)) {
                     self.tokens.next();
                     self.item(name, word, &mut list)?;
                 }
@@ -342,12 +342,20 @@ impl List {
         List { wanted: known.is_some(), rule, numbers: Vec::new(), words: Vec::new(), node: None }
     }
 
-    /// True if a word that begins like a number begins a list of numbers; otherwise it is a string without quotes.
+    /// True if a word begins a list of numbers; otherwise it is a string without quotes.
     fn begins(&self, word: &[u8]) -> bool {
         match self.rule {
-            NotANumber::Word => !self.wanted && (value(word).is_some() || odd::value(word).is_some()),
-            _ => true,
+            NotANumber::Word => {
+                !self.wanted && is_number(word) && (value(word).is_some() || odd::value(word).is_some())
+            }
+            _ => self.continues(word),
         }
+    }
+
+    /// True for a word that is a further number of a list without brackets.
+    fn continues(&self, word: &[u8]) -> bool {
+        let odd = matches!(self.rule, NotANumber::Position | NotANumber::Default);
+        is_number(word) || odd && odd::value(word).is_some()
     }
 
     #[inline]

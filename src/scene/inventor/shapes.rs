@@ -76,8 +76,8 @@ impl InventorReader {
         self.set_material(found);
     }
 
-    /// A material, and whether it is transparent. Beyond the last material they are repeated, with a warning; `field` is
-    /// the field that has the index.
+    /// A material, and whether it is transparent. Beyond the last material they are repeated, with a warning; `field`
+    /// is the field that has the index.
     fn material(&mut self, index: usize, field: Option<&Field>, state: &State) -> (Material, bool) {
         let count = state.materials.len();
         if index >= count {

@@ -180,6 +180,9 @@ pub struct State<'t> {
     pub selected_child: i64,
 }
 
+/// The default ambient light.
+const AMBIENT: DVec3 = DVec3::splat(0.2);
+
 /// The default diffuse colour.
 const GREY: [f64; 3] = [0.8; 3];
 const PACKED_GREY: [f64; 1] = [0xcccc_ccff_u32 as f64];
@@ -211,14 +214,14 @@ impl State<'static> {
             filled: true,
             crease_angle,
             clockwise: false,
-            ambient: DVec3::splat(0.2),
+            ambient: AMBIENT,
             selected_child: -1,
         }
     }
 }
 
-/// The list in a field that is not geometry; `before` if it is empty or ignored (`~`), `default` if the field is absent or
-/// has an error, which is added to `faults`.
+/// The list in a field that is not geometry; `before` if it is empty or ignored (`~`), `default` if the field is absent
+/// or has an error, which is added to `faults`.
 fn list<'t>(
     node: &'t Node,
     name: &str,
@@ -248,6 +251,15 @@ fn or_default<T>(value: Result<T, Fault>, default: T, faults: &mut Vec<Fault>) -
         faults.push(fault);
         default
     })
+}
+
+/// The number of a field if it is finite, otherwise the default after adding an error to `faults`.
+fn finite(number: f64, default: f64, field: Option<&Field>, faults: &mut Vec<Fault>) -> f64 {
+    if number.is_finite() {
+        return number;
+    }
+    faults.extend(field.map(|field| field.fault("the number is not finite")));
+    default
 }
 
 impl<'t> State<'t> {
@@ -281,7 +293,7 @@ impl<'t> State<'t> {
             NodeType::ShapeHints => {
                 if !node.ignores("creaseAngle") {
                     let angle = or_default(node.number("creaseAngle", crease_angle), crease_angle, faults);
-                    self.crease_angle = if angle.is_finite() { angle } else { crease_angle };
+                    self.crease_angle = finite(angle, crease_angle, node.field("creaseAngle"), faults);
                 }
                 if !node.ignores("vertexOrdering") {
                     let ordering = or_default(node.word("vertexOrdering"), None, faults);
@@ -301,7 +313,8 @@ impl<'t> State<'t> {
             NodeType::Environment if !node.ignores("ambientIntensity") && !node.ignores("ambientColor") => {
                 let intensity = or_default(node.number("ambientIntensity", 0.2), 0.2, faults);
                 let ambient = or_default(node.vector("ambientColor", DVec3::ONE), DVec3::ONE, faults) * intensity;
-                self.ambient = if ambient.is_finite() { ambient } else { DVec3::splat(0.2) };
+                let field = node.field("ambientIntensity").or(node.field("ambientColor"));
+                self.ambient = if finite(ambient.length(), -1.0, field, faults) < 0.0 { AMBIENT } else { ambient };
             }
             _ => {}
         }

@@ -140,8 +140,8 @@ impl InventorReader {
         }
     }
 
-    /// Traverses the children of an `Array` once for each of its copies, along one to three axes. The number of the copy
-    /// is what a switch with `whichChild -2` inherits.
+    /// Traverses the children of an `Array` once for each of its copies, along one to three axes. The number of the
+    /// copy is what a switch with `whichChild -2` inherits.
     fn array<'t>(&mut self, file: FileContext<'t, '_>, node: &Node, state: &mut State<'t>) -> Result<(), ReadError> {
         let axes = [
             ("numElements1", "separation1", DVec3::X),

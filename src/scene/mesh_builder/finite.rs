@@ -1,5 +1,5 @@
-//! The rule about vertices that are not finite, for all text formats: one that no face uses is dropped; a face that uses
-//! one is dropped and counted. Numbers that are none have many spellings, see [`crate::scene::text::odd`].
+//! The rule about vertices that are not finite, for all text formats: one that no face uses is dropped; a face that
+//! uses one is dropped and counted. Numbers that are none have many spellings, see [`crate::scene::text::odd`].
 //!
 //! A finite coordinate beyond [`MAX_COORDINATE`] is another case: a vertex that no face uses is dropped, a face that
 //! uses one is an error.

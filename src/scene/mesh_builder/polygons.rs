@@ -11,8 +11,8 @@ const FEW: usize = 4;
 
 impl MeshBuilder {
     /// Adds a polygon; its corners are counter-clockwise, seen from outside. `normals` has a normal per corner, or is
-    /// empty for flat shading. A polygon with fewer than three corners is ignored, with a warning; one with a corner that
-    /// is not finite is dropped and counted.
+    /// empty for flat shading. A polygon with fewer than three corners is ignored, with a warning; one with a corner
+    /// that is not finite is dropped and counted.
     ///
     /// # Errors
     /// A corner exceeds single precision, or the geometry exceeds the limits.

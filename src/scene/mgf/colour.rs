@@ -27,8 +27,8 @@ const RGB: DMat3 = DMat3::from_cols_array_2d(&[
 const LUMINANCE: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);
 
 impl Chromaticity {
-    /// The chromaticity with these coordinates, if they are valid. Both may be zero, which is a saturated blue: the third
-    /// coordinate is then 1.
+    /// The chromaticity with these coordinates, if they are valid. Both may be zero, which is a saturated blue: the
+    /// third coordinate is then 1.
     pub fn new(x: f64, y: f64) -> Option<Chromaticity> {
         (x >= 0.0 && y >= 0.0 && x + y <= 1.0 + 1e-6).then_some(Chromaticity { x, y })
     }

@@ -31,8 +31,8 @@ impl Faces {
         }
     }
 
-    /// Adds the corners of a word that [`Faces::plain_corner`] does not parse: of vertices or normals that follow in the
-    /// file, with texture coordinates or normals that do not exist, or in unusual notations.
+    /// Adds the corners of a word that [`Faces::plain_corner`] does not parse: of vertices or normals that follow in
+    /// the file, with texture coordinates or normals that do not exist, or in unusual notations.
     ///
     /// # Errors
     /// There is no such vertex.

@@ -219,8 +219,8 @@ impl<'a> Lines<'a> {
         Ok(DVec3::from(found))
     }
 
-    /// Reads a position and subtracts `offset`, in double precision unless it is zero. A position that is not finite, or
-    /// beyond the largest coordinate, is not valid, see [`is_valid`].
+    /// Reads a position and subtracts `offset`, in double precision unless it is zero. A position that is not finite,
+    /// or beyond the largest coordinate, is not valid, see [`is_valid`].
     #[inline]
     pub fn position(&mut self, offset: DVec3) -> Result<Vec3, Fault> {
         let start = self.clone();

@@ -136,8 +136,8 @@ fn read_polygon<S: RowReader>(
     Ok(())
 }
 
-/// Reads the indices of triangle strips. A negative index begins another strip, as does the largest value of an unsigned
-/// type.
+/// Reads the indices of triangle strips. A negative index begins another strip, as does the largest value of an
+/// unsigned type.
 fn read_strip<S: RowReader>(
     corners: i64,
     item: Scalar,

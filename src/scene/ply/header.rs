@@ -38,8 +38,8 @@ impl Scalar {
         !matches!(self, Scalar::F32 | Scalar::F64 | Scalar::Other)
     }
 
-    /// The type of a name, which is an original one or a later one with a width. Those of 64 bits are not of the format,
-    /// but common.
+    /// The type of a name, which is an original one or a later one with a width. Those of 64 bits are not of the
+    /// format, but common.
     fn from_name(name: &str) -> Option<Scalar> {
         Some(match name.to_ascii_lowercase().as_str() {
             "char" | "int8" => Scalar::I8,

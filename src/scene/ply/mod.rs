@@ -6,8 +6,8 @@
 //! every count with the remaining bytes before it allocates memory.
 //!
 //! The reader supports x, y, z of the vertices; nx, ny, nz if all three exist (otherwise smooth normals are computed,
-//! see [`crate::scene::normals`]); `vertex_indices` or `vertex_index` of the faces; and triangle strips. [`super::polygon`]
-//! triangulates polygons. All other properties and elements are ignored.
+//! see [`crate::scene::normals`]); `vertex_indices` or `vertex_index` of the faces; and triangle strips.
+//! [`super::polygon`] triangulates polygons. All other properties and elements are ignored.
 
 mod ascii;
 mod body;
@@ -59,7 +59,9 @@ fn parse(bytes: &[u8], offset: Option<DVec3>) -> Result<Body, Fault> {
     };
     let mut body = match header.encoding {
         Encoding::Ascii => {
-            refuse_zeros(bytes)?;
+            // A comment in the header may have zero bytes; the body has no comments.
+            let line = |fault: Fault| Fault { line: fault.line.map(|line| line + header.body_line - 1), ..fault };
+            refuse_zeros(body).map_err(line)?;
             ascii(Layout::Lines).or_else(|fault| {
                 let whole = |body: &Body| body.bytes_after == 0;
                 let free = ascii(Layout::Free).ok().filter(whole);

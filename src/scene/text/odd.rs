@@ -22,8 +22,8 @@ const NONE: [&[u8]; 11] = [
 /// The letters after `1.#`, as the C library of Windows writes them; digits and exponents may follow.
 const AFTER_HASH: [&[u8]; 6] = [b"ind", b"qnan", b"snan", b"inf", b"nan", b"j"];
 
-/// The value of a word that is no number in the usual notation: NaN or infinity for the spellings of those, a number for
-/// Fortran's exponents (`2.5D+01`). `None` for every other word.
+/// The value of a word that is no number in the usual notation: NaN or infinity for the spellings of those, a number
+/// for Fortran's exponents (`2.5D+01`). `None` for every other word.
 #[cold]
 pub fn value(word: &[u8]) -> Option<f64> {
     let whole = |found: (f64, usize)| (found.1 == word.len()).then_some(found.0);

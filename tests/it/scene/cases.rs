@@ -47,7 +47,7 @@ fn files_that_were_refused_or_read_wrongly_have_their_right_values() {
         ("iv/unquoted_digit.wrl", 2, SQUARE, "Texture2 ignored"),
         ("iv/unquoted_minus.wrl", 2, SQUARE, ""),
         ("mgf/cxy_zero.mgf", 1, TRIANGLE, ""),
-        ("nff/fill_rgb_only.nff", 1, TRIANGLE, "fill_rgb_only.nff:10: f: 3 numbers instead of 8"),
+        ("nff/fill_rgb_only.nff", 1, TRIANGLE, "fill_rgb_only.nff:11: f: 3 numbers instead of 8"),
         ("obj/commas.obj", 1, TRIANGLE, "commas.obj:1: a number has commas"),
         ("obj/faces_first.obj", 1, TRIANGLE, ""),
         ("obj/indices_plus.obj", 1, TRIANGLE, "indices_plus.obj:5: a number has"),

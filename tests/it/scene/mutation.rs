@@ -30,7 +30,7 @@ const VARIANTS: u64 = 300;
 const OWN_VARIANTS: u64 = 2000;
 
 /// Small files with all features, which are tested even without the fixtures.
-const OWN: [(&str, &str); 6] = [
+const OWN: [(&str, &str); 8] = [
     ("all.aff", include_str!("../../data/all.aff")),
     (
         "all.nff",
@@ -39,6 +39,18 @@ const OWN: [(&str, &str); 6] = [
     ),
     ("all.mgf", include_str!("../../data/all.mgf")),
     ("cube.ply", CUBE),
+    (
+        "strips.ply",
+        "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty double z\nproperty float nx\n\
+        property float ny\nproperty float nz\nelement tristrips 2\nproperty list float int vertex_indices\nelement face 1\n\
+        property list uchar int64 vertex_index\nend_header\n0 0 0\n0 0 1\n2 0 0 0 0 -1.#IND\n0 3 0 0 0 1\n2 3 1 a b c\n\
+        nan inf 1e39 0 0 1\n8 0 1 2 3 -1 0 1 2\n4 1 2 3 4\n4\n0 1 3.0 2\n",
+    ),
+    (
+        "first.obj",
+        "f 1//1 2/x/2 4/3/9 3\nf 1, 2, 5\nf +1 2 3\nv 0 0 0\nv 2.0D0 0 0\nv 0, 3, 0\nv 2 3 1\nv nan -1.#IND 1e39\n\
+        vn 0 0 1\nvn 1.#QNAN 0 0\nf -5 -4 -3 -2\nf 5 4 3\nmtllib ..\\no\\no.mtl\n",
+    ),
     ("all.iv", include_str!("../../data/all.iv")),
     (
         "all.wrl",

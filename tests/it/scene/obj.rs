@@ -300,7 +300,7 @@ fn each_error_has_its_line() {
         ("v 0 0 zero\n", ":1: a vertex: `zero` is not a number"),
         ("\n\nv 0 0 nan\nf 1 1 1", ":3: a vertex has the values (0, 0, NaN), which are not finite"),
         ("v 0 0 1e39\nf 1 1 1", ":1: a vertex has the values"),
-        ("v 0 0 1e19\nv 1e19 0 0\nf 2 2 2", ":3: a vertex has the values (9999999980506448000, 0, 0), which exceed"),
+        ("v 0 0 1e19\nv 1e19 0 0\nf 2 2 2", ":3: a vertex has the values (10000000000000000000, 0, 0), which exceed"),
         ("f 1 1 1\nv 0 0 1e19\n", ":2: a vertex has the values"),
         ("v 1,5 2,5 0\n", ":1: a vertex: `1,5` is not a number (write decimals with a point)"),
         ("v 0 0\x000 1 2\n", ":1: there is a zero byte inside a word"),

@@ -131,10 +131,12 @@ fn fills_lights_and_views_with_errors_have_their_defaults() {
     let triangle = "p 3 0 0 0 2 0 0 0 3 0\n";
     for (line, warning) in [
         ("f 1 0 0", "a.nff:1: f: 3 numbers instead of 8"),
+        ("f", "a.nff:1: f: 0 numbers instead of 8"),
+        ("f 1 0", "a.nff:1: f: 2 numbers instead of 8"),
         ("f 1 0 0 .5", "a.nff:1: f: 4 numbers instead of 8"),
         ("f 1 0 0 .8 .2 20 0", "f: 7 numbers instead of 8"),
-        ("f nan 0 0 .8 .2 20 0 1", "f: the colour is not finite"),
-        ("f -1.#IND -1.#IND -1.#IND .8 .2 20 0 1", "f: the colour is not finite"),
+        ("f nan 0 0 .8 .2 20 0 1", "f: a number is not finite"),
+        ("f -1.#IND -1.#IND -1.#IND .8 .2 20 0 1", "f: a number is not finite"),
         ("f 1 0 0 .8 .2 1.#QNAN 0 1", "f: a number is not finite"),
         ("fm 1 0 0 1 nan 0 1 0 0 10 0 1", "fm: the colour is not finite"),
         ("fm 1 0 0 1 0 0 1 0 0 inf 0 1", "fm: a number is not finite"),

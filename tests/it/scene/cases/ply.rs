@@ -216,6 +216,9 @@ fn headers_against_the_letter_are_read_where_they_are_unambiguous() {
             warning => warns(to, &scene, warning),
         }
     }
+    let zeros = whole.replacen("element", "comment made by a\0b\nelement", 1);
+    is_box("a comment with a zero byte", &ply(&zeros), 2, SQUARE);
+    assert!(refused(&whole.replacen("2 3 1", "2 3\x001 1", 1)).contains("mesh.ply:13: there is a zero byte"));
     for (from, to) in
         [("ascii 1.0", "ascii 2.0"), ("3 0 1 2", "3 0.5 1 2"), ("3 0 1 2", "2.5 0 1"), ("ply\n", "plyx\n")]
     {
