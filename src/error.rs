@@ -1,5 +1,6 @@
 //! The one error type that reaches a user, and its exit codes.
 
+use crate::names;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -13,7 +14,7 @@ pub enum Error {
     #[error("{0}")]
     Input(Input),
     /// A result cannot be written (disk full, folder not writable).
-    #[error("cannot write {}: {source}", path.display())]
+    #[error("cannot write {}: {source}", names::text(path.as_os_str()))]
     Output {
         /// The file or folder that was being written.
         path: PathBuf,
@@ -33,7 +34,7 @@ pub enum Error {
     #[error("interrupted")]
     Interrupted,
     /// The answer of a check (`--check`), not a failure: the document differs from what would be written now.
-    #[error("{}: is not up to date (run the same without --check)", .0.display())]
+    #[error("{}: is not up to date (run the same without --check)", names::text(.0.as_os_str()))]
     NotUpToDate(PathBuf),
 }
 
@@ -88,7 +89,7 @@ impl fmt::Display for Input {
 impl Error {
     /// An [`Error::Input`] about a file; `line` counts from 1.
     pub fn file(path: &Path, line: Option<usize>, problem: impl Into<String>, hint: impl Into<String>) -> Self {
-        Error::Input(Input { place: path.display().to_string(), line, problem: problem.into(), hint: hint.into() })
+        Error::Input(Input { place: names::text(path.as_os_str()), line, problem: problem.into(), hint: hint.into() })
     }
 
     /// An [`Error::Input`] about an argument; `place` is the flag or the argument's name.

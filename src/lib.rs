@@ -4,7 +4,9 @@
 //!
 //! | step | what it is |
 //! |---|---|
+//! | [`names`] | file names as text, names of scenes from paths, names of output files |
 //! | [`error`] | the one error that reaches a user: file, line, problem, hint |
+//! | [`guard`] | no command writes over what it reads |
 //! | [`threads`] | pools of threads to measure with |
 //! | [`math`] | boxes, rays, and the ray/box test; the twin of `kernels/lib/geom.wgsl` |
 //! | [`scene`] | mesh, materials, lights; one file per format; procedural scenes |
@@ -25,8 +27,10 @@ pub mod compare;
 pub mod device;
 pub mod error;
 pub mod fetch;
+pub mod guard;
 pub mod harness;
 pub mod math;
+pub mod names;
 pub mod record;
 pub mod report;
 pub mod scene;

@@ -5,11 +5,11 @@ use super::orbit::{LightOrbit, Orbit};
 use super::path::{CameraPath, Motion, PathLight};
 use super::recorded::{RecordedFrames, RecordedPose};
 use crate::error::{Error, Result};
+use crate::names;
 use crate::scene::placement::MAX_COORDINATE;
 use glam::{DVec3, Vec3};
 use serde::Deserialize;
 use std::ops::Range;
-use std::path::Path;
 use toml::Spanned;
 
 /// The largest number of frames of a path. All views of a path are held in memory.
@@ -70,7 +70,7 @@ impl PathText<'_> {
     fn fault(&self, span: Range<usize>, problem: impl Into<String>, hint: impl Into<String>) -> Error {
         let before = &self.text.as_bytes()[..span.start.min(self.text.len())];
         let line = 1 + before.iter().filter(|&&b| b == b'\n').count();
-        Error::file(Path::new(self.place), Some(line), problem, hint)
+        Error::file(&names::file(self.place), Some(line), problem, hint)
     }
 
     /// The given value or `default`.

@@ -6,10 +6,11 @@ use super::orbit::{LightOrbit, Orbit};
 use super::recorded::{RecordedFrames, RecordedPose};
 use super::{Camera, View};
 use crate::error::{Error, Result};
+use crate::guard;
 use crate::math::Aabb;
+use crate::names;
 use crate::scene::{Light, Placement, Scene, SceneCamera, did_you_mean};
 use glam::{DVec3, Vec3};
-use std::path::Path;
 
 /// Name and text of the path files that are embedded in the program, so that it needs no files at run time.
 const EMBEDDED: &[(&str, &str)] = &[
@@ -44,7 +45,7 @@ pub fn descriptions() -> Vec<(String, usize, String)> {
 /// A path as read from a file; [`CameraPath::views`] fits it to a scene.
 #[derive(Clone, Debug)]
 pub struct CameraPath {
-    /// The embedded path's name, or the file's stem.
+    /// The embedded path's name, or that of the file's path, see [`names::of_file`].
     pub name: String,
     /// Description in the file, for listings; may be empty.
     pub description: String,
@@ -116,13 +117,13 @@ impl CameraPath {
     /// # Errors
     /// [`Error::Input`] if neither exists, or the file cannot be used.
     pub fn load(name_or_file: &str) -> Result<CameraPath> {
-        let path = Path::new(name_or_file);
+        let path = &*names::file(name_or_file);
         if path.is_file() {
+            guard::read(path);
             let text = std::fs::read_to_string(path).map_err(|e| {
                 Error::file(path, None, format!("cannot be read: {e}"), "it must be a text file in UTF-8")
             })?;
-            let name = path.file_stem().unwrap_or_default().to_string_lossy();
-            return file::parse(&name, name_or_file, &text);
+            return file::parse(&names::of_file(path), name_or_file, &text);
         }
         match EMBEDDED.iter().find(|(name, _)| *name == name_or_file) {
             Some((name, text)) => file::parse(name, &embedded_place(name), text),
@@ -211,7 +212,7 @@ impl CameraPath {
                 let camera = Camera { position: scene.placement.snap(camera.position), ..camera };
                 let light = |i| vec![orbit.light(bounds, self.up, self.share(frame(i)))];
                 self.check_camera(frame(0), &camera)?;
-                Ok((0..wanted).map(|i| View { camera, lights: light(i) }).collect())
+                (0..wanted).map(|i| self.lit(frame(i), bounds, View { camera, lights: light(i) })).collect()
             }
             Motion::Recorded(recorded) => (0..wanted)
                 .map(|i| self.view(scene, space, frame(i), recorded.camera(space, frame(i), self.field_of_view)))
@@ -231,7 +232,7 @@ impl CameraPath {
     fn more_frames(&self) -> &'static str {
         let embedded = EMBEDDED.iter().any(|(name, _)| self.place == embedded_place(name));
         match &self.motion {
-            _ if embedded || !Path::new(&self.place).is_file() => "",
+            _ if embedded || !names::file(&self.place).is_file() => "",
             Motion::Recorded(_) => ", or add poses to the file",
             _ => ", or raise `frames` in the file",
         }
@@ -264,7 +265,7 @@ impl CameraPath {
     fn view(&self, scene: &Scene, space: SceneSpace, frame: usize, camera: Camera) -> Result<View> {
         let camera = Camera { position: scene.placement.snap(camera.position), ..camera };
         self.check_camera(frame, &camera)?;
-        Ok(View { camera, lights: self.lights_for(scene, space, &camera) })
+        self.lit(frame, space.bounds, View { camera, lights: self.lights_for(scene, space, &camera) })
     }
 
     /// True if the light moves from frame to frame, as in a light orbit.
@@ -295,6 +296,19 @@ impl CameraPath {
         let right = camera.direction.cross(camera.up).normalize();
         let up = right.cross(camera.direction);
         vec![Light::new(camera.position + (up * 0.5 - right * 0.25) * radius, Vec3::ONE)]
+    }
+
+    /// Refuses a light whose distance to the scene, or its square, is outside of the range of floats.
+    fn lit(&self, frame: usize, bounds: Aabb, view: View) -> Result<View> {
+        let unusable = |light: &Light| !light.position.distance_squared(bounds.center()).is_finite();
+        match view.lights.iter().position(unusable) {
+            None => Ok(view),
+            Some(light) => {
+                let problem =
+                    format!("frame {frame}: light {light} is too far away from the scene for single precision");
+                Err(Error::argument(&self.place, problem, "bring it closer to the scene"))
+            }
+        }
     }
 
     /// Refuses a camera without a valid direction or up vector, which interpolation of keys can produce.

@@ -1,10 +1,11 @@
 //! `rtbench build`: builds structures without tracing rays.
 
 use super::interrupt;
-use super::library::LibraryArguments;
+use super::library::{LibraryArguments, file_name};
 use super::output;
 use super::progress::Building;
 use crate::error::{Error, Result};
+use crate::guard;
 use crate::harness::parse_list;
 use crate::record::files;
 use crate::record::row::{Artifact, Input};
@@ -22,7 +23,7 @@ use std::sync::atomic::Ordering;
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
     /// Scene file, or name of a scene, with options; may be repeated
-    #[arg(long, required = true, value_name = "FILE|NAME[:KEY=VALUE,..]")]
+    #[arg(long, required = true, value_name = "FILE|NAME[:KEY=VALUE,..]", value_parser = file_name())]
     scene: Vec<String>,
     /// Structures with options; comma list, may be repeated
     #[arg(long, value_name = "NAME[:KEY=VALUE,..]", default_value = "grid,kdtree,bvh,ploc-stack")]
@@ -84,6 +85,7 @@ struct Job<'a> {
 impl Job<'_> {
     fn scene(&mut self, name: &str, selections: &[Selection]) -> Result<()> {
         let scene = Arc::new(self.arguments.library.load(name)?);
+        self.arguments.csv.as_deref().map_or(Ok(()), guard::check_output)?;
         if (self.interrupted)() {
             return Err(Error::Interrupted);
         }

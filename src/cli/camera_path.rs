@@ -1,13 +1,14 @@
 //! `rtbench camera-path`: lists the built-in camera paths and exports a scene's.
 
-use super::library::LibraryArguments;
+use super::library::{LibraryArguments, file_name};
 use super::output;
 use crate::camera::{self, CameraPath};
 use crate::error::{Error, Result};
+use crate::guard;
 use crate::record::files;
 use crate::workloads::trace::rays::Config;
 use clap::Subcommand;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// List the built-in camera paths, or write a scene's camera path to a file
 #[derive(Subcommand, Debug)]
@@ -22,12 +23,12 @@ pub enum Command {
     /// path with a moving light cannot be exported.
     Export {
         /// Scene file, or name of a scene, with options
-        #[arg(value_name = "FILE|NAME[:KEY=VALUE,..]")]
+        #[arg(value_name = "FILE|NAME[:KEY=VALUE,..]", value_parser = file_name())]
         scene: String,
         #[command(flatten)]
         library: LibraryArguments,
         /// Camera path to export instead of the scene's default
-        #[arg(long, value_name = "FILE|NAME")]
+        #[arg(long, value_name = "FILE|NAME", value_parser = file_name())]
         camera_path: Option<String>,
         /// Export only N frames, evenly spaced
         #[arg(long, value_name = "N")]
@@ -55,14 +56,14 @@ pub fn run(command: &Command) -> Result<()> {
             output::print(&camera::descriptions().into_iter().map(line).collect::<String>())
         }
         Command::Export { scene, library, camera_path, frames, out } => {
-            let (scene, sources) = library.load_with_sources(scene)?;
-            files::refuse_overwrite(out, sources.paths().chain(camera_path.as_deref().map(Path::new)))?;
+            let scene = library.load(scene)?;
             let path = CameraPath::named_or_fitting(camera_path.as_deref(), &scene, Config::P.shadows())?;
             if path.moves_light() {
                 let name = camera_path.as_deref().unwrap_or(&path.name);
                 let problem = "its light moves, but an exported path holds only camera poses";
                 return Err(Error::argument(name, problem, format!("use the path itself: --camera-path {name}")));
             }
+            guard::check_output(out)?;
             let recorded = path.poses(&scene, *frames)?;
             let text = match out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv")) {
                 true => camera::to_placed_csv(&scene.placement, &recorded),

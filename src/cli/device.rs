@@ -70,13 +70,17 @@ impl DeviceArguments {
             None => Selector::Best,
         };
         let adapter = vulkan::choose(&adapters, &selector)?;
+        let names: Vec<&str> = adapters.iter().map(|adapter| adapter.info().name.as_str()).collect();
         let reason = match &self.adapter {
-            Some(wanted) => format!("asked for by --adapter {wanted}"),
+            Some(wanted) => match vulkan::fitting(&names, &selector).as_slice() {
+                [] | [_] => format!("asked for by --adapter {wanted}"),
+                several => {
+                    let list: Vec<String> = several.iter().map(|&index| format!("{index} {}", names[index])).collect();
+                    format!("the first of those that fit --adapter {wanted}: {}", list.join(", "))
+                }
+            },
             None if adapters.len() == 1 => "the only Vulkan adapter".into(),
-            None => {
-                let names: Vec<&str> = adapters.iter().map(|adapter| adapter.info().name.as_str()).collect();
-                format!("the best of {} Vulkan adapters: {}", adapters.len(), names.join(", "))
-            }
+            None => format!("the best of {} Vulkan adapters: {}", adapters.len(), names.join(", ")),
         };
         let options = VulkanOptions { checked: self.checked, ..VulkanOptions::default() };
         match VulkanDevice::open(adapter, options) {

@@ -37,3 +37,15 @@ pub fn at_once() -> Result<()> {
 fn listen(handler: impl FnMut() + Send + 'static) -> Result<()> {
     ctrlc::set_handler(handler).map_err(|e| Error::Device(format!("cannot listen for Ctrl-C: {e}")))
 }
+
+/// Makes a write beyond the limit of a file's size (`ulimit -f`) an error of this write, like that of a full disk, and
+/// not the end of the process.
+#[cfg(unix)]
+pub fn survive_file_size_limit() {
+    let seen = Arc::new(AtomicBool::new(false));
+    // Without the handler the system's default remains
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, seen);
+}
+
+#[cfg(not(unix))]
+pub fn survive_file_size_limit() {}

@@ -2,9 +2,11 @@
 
 use super::output;
 use crate::error::Result;
+use crate::names;
 use crate::scene::cache::{self, Sources};
 use crate::scene::{self, Scene};
 use clap::Args;
+use clap::builder::{OsStringValueParser, TypedValueParser};
 use std::path::PathBuf;
 
 /// The folder of the catalogue's files, and the time at which animated scenes are loaded.
@@ -68,6 +70,11 @@ fn print_warnings(scene: &Scene) {
     for warning in &scene.warnings {
         output::note(&format!("{}: {warning}", scene.name));
     }
+}
+
+/// Reads an argument that may have a file name in it, see [`names::text`].
+pub fn file_name() -> impl TypedValueParser<Value = String> {
+    OsStringValueParser::new().map(|argument| names::text(&argument))
 }
 
 fn finite(text: &str) -> Result<f64, String> {

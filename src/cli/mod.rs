@@ -88,6 +88,7 @@ fn cli() -> clap::Command {
 
 /// Runs the program.
 pub fn main() -> ExitCode {
+    interrupt::survive_file_size_limit();
     let matches = match cli().try_get_matches() {
         Ok(matches) => matches,
         Err(error) => return usage(&error),

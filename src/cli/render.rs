@@ -2,10 +2,11 @@
 
 use super::device::{self, DeviceArguments};
 use super::interrupt;
-use super::library::LibraryArguments;
+use super::library::{LibraryArguments, file_name};
 use super::output;
 use crate::camera::{CameraPath, View};
 use crate::error::{Error, Result};
+use crate::guard;
 use crate::record::picture;
 use crate::workloads::trace::backend::{Config, Counters, Prepared, Size};
 use crate::workloads::trace::{Selection, pictures, rays, tracer};
@@ -17,10 +18,10 @@ use std::path::PathBuf;
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
     /// Scene file, or name of a scene with options
-    #[arg(long, value_name = "FILE|NAME[:KEY=VALUE,..]")]
+    #[arg(long, value_name = "FILE|NAME[:KEY=VALUE,..]", value_parser = file_name())]
     scene: String,
     /// Camera path, instead of the scene's own
-    #[arg(long, value_name = "FILE|NAME")]
+    #[arg(long, value_name = "FILE|NAME", value_parser = file_name())]
     camera_path: Option<String>,
     /// Structure with options
     #[arg(long, value_name = "NAME[:KEY=VALUE,..]", default_value = "bvh-stack")]
@@ -99,6 +100,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     arguments.device.check()?;
     let scene = arguments.library.load(&arguments.scene)?;
     let path = CameraPath::named_or_fitting(arguments.camera_path.as_deref(), &scene, config.shadows())?;
+    guard::check_output(&arguments.out)?;
     let views = path.views(&scene, None)?;
     let view = views.get(arguments.frame).ok_or_else(|| {
         let problem = format!("the path {} has no frame {}", path.name, arguments.frame);

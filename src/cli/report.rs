@@ -2,6 +2,7 @@
 
 use super::runs::{DeviceArguments, OptionArguments, RunArguments, write_or_print};
 use crate::error::Result;
+use crate::guard;
 use crate::sources::report::{self, Part};
 use clap::Args;
 use std::path::PathBuf;
@@ -29,6 +30,7 @@ pub struct Arguments {
 /// A run or picture that cannot be read, an unknown source or device, a page that cannot be written.
 pub fn run(arguments: &Arguments) -> Result<()> {
     let opened = arguments.runs.read()?;
+    guard::check_output(&arguments.output)?;
     let devices = arguments.device.select(&opened.sources)?;
     let part = |((source, results), device)| Part { source, results, options: arguments.options.options(true, device) };
     let parts: Vec<Part> = opened.each().zip(devices).map(part).collect();

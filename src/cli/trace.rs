@@ -2,11 +2,11 @@
 
 use super::device::{self, DeviceArguments};
 use super::interrupt;
-use super::library::LibraryArguments;
+use super::library::{LibraryArguments, file_name};
 use super::output;
 use crate::error::Result;
+use crate::guard;
 use crate::math::MISS;
-use crate::record::files;
 use crate::workloads::trace::backend::GivenRay;
 use crate::workloads::trace::{Selection, rays_csv, tracer};
 use clap::Args;
@@ -23,7 +23,7 @@ use std::path::PathBuf;
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
     /// Scene file, or name of a scene with options
-    #[arg(long, value_name = "FILE|NAME[:KEY=VALUE,..]")]
+    #[arg(long, value_name = "FILE|NAME[:KEY=VALUE,..]", value_parser = file_name())]
     scene: String,
     /// CSV file of rays
     #[arg(long, value_name = "FILE")]
@@ -56,11 +56,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let selection = Selection::parse(&arguments.structure)?;
     interrupt::at_once()?;
     arguments.device.check()?;
-    files::refuse_overwrite(&arguments.out, [arguments.rays.as_path()].into_iter())?;
     let exact = rays_csv::read_exact(&arguments.rays)?;
-    let (scene, sources) = arguments.library.load_with_sources(&arguments.scene)?;
+    let scene = arguments.library.load(&arguments.scene)?;
+    guard::check_output(&arguments.out)?;
     let rays: Vec<_> = exact.iter().map(|ray| ray.place(&scene.placement)).collect();
-    files::refuse_overwrite(&arguments.out, sources.paths())?;
     let device = arguments.device.open()?;
     device::announce(&device);
     let built = selection.build(&scene, arguments.device.threads)?;

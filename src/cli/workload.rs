@@ -2,7 +2,7 @@
 
 use super::device::{self, DeviceArguments};
 use super::interrupt;
-use super::library::LibraryArguments;
+use super::library::{LibraryArguments, file_name};
 use super::output;
 use super::progress::Progress;
 use crate::error::{Error, Result};
@@ -10,6 +10,7 @@ use crate::harness::previous::PreviousRun;
 use crate::harness::run::{self, Job};
 use crate::harness::workload::{Info, Library, Workload};
 use crate::harness::{Plan, Request, environment, summary};
+use crate::names;
 use crate::record::row::{Row, Status};
 use crate::record::terminal::counted;
 use crate::record::{files, journal};
@@ -23,7 +24,7 @@ use std::sync::atomic::Ordering;
 #[derive(Args, Clone, Debug)]
 struct CommonArguments {
     /// What the other flags begin with: the name of a preset, or a TOML file like those in presets/
-    #[arg(long, value_name = "NAME|FILE")]
+    #[arg(long, value_name = "NAME|FILE", value_parser = file_name())]
     preset: Option<String>,
     #[command(flatten)]
     library: LibraryArguments,
@@ -98,8 +99,14 @@ fn command(info: &'static Info) -> Command {
 fn with_axes(mut command: Command, info: &'static Info) -> Command {
     for axis in info.axes.iter().filter(|axis| axis.is_flag) {
         let flag = axis.name.replace('_', "-");
-        command = command
-            .arg(Arg::new(axis.name).long(flag).value_name(axis.value_name).help(axis.help).action(ArgAction::Append));
+        command = command.arg(
+            Arg::new(axis.name)
+                .long(flag)
+                .value_name(axis.value_name)
+                .help(axis.help)
+                .value_parser(file_name())
+                .action(ArgAction::Append),
+        );
     }
     command
 }
@@ -154,7 +161,7 @@ impl Given {
 
     /// The command line that a recorded run began with; `None` if this program does not know it.
     fn parse(recorded: &[String]) -> Option<Given> {
-        let matches = super::cli().try_get_matches_from(recorded).ok()?;
+        let matches = super::cli().try_get_matches_from(recorded.iter().map(|text| names::file(text))).ok()?;
         let (name, matches) = matches.subcommand()?;
         Given::read(workloads::find(name)?, matches).ok()
     }
@@ -274,7 +281,7 @@ impl Given {
         let is_new = previous.provenance().is_none();
         let out = match &common.out {
             Some(out) => out.clone(),
-            None => default_folder(&device.device.info().name),
+            None => files::create_numbered_folder(&default_folder(&device.device.info().name))?,
         };
         let mut progress = Progress::new(self.workload, plan.cases.len(), plan.work(), common.quiet);
         let print_line = progress.line_printer();
@@ -288,7 +295,7 @@ impl Given {
             plan: &plan,
             out: &out,
             previous,
-            arguments: std::env::args_os().map(|a| a.to_string_lossy().into_owned()).collect(),
+            arguments: std::env::args_os().map(|a| names::text(&a)).collect(),
             devices: vec![device],
             open: &|_| common.device.open(),
             interrupted: &interrupted,
@@ -351,7 +358,7 @@ impl Given {
 /// does not tell in which folder the run was begun.
 fn from_elsewhere(error: Error) -> Error {
     match error {
-        Error::Input(mut input) if is_absent_here(Path::new(&input.place)) => {
+        Error::Input(mut input) if is_absent_here(&names::file(&input.place)) => {
             let separator = if input.hint.is_empty() { "" } else { "; " };
             input.hint += &format!("{separator}a run is resumed from the folder in which it was begun");
             Error::Input(input)
@@ -380,5 +387,5 @@ fn tell_where(workload: &dyn Workload, out: &Path, error: &Error) {
 
 /// `results/TIME-DEVICE`.
 fn default_folder(device: &str) -> PathBuf {
-    Path::new("results").join(format!("{}-{}", environment::now_for_file_name(), files::slug(device)))
+    Path::new("results").join(format!("{}-{}", environment::now_for_file_name(), names::slug(device)))
 }

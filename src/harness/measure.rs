@@ -77,8 +77,24 @@ pub fn choose_source(samples: &Samples) -> (TimingSource, Vec<String>) {
             warnings.push("device timestamps are zero or run backwards: wall time is used".into());
         }
     }
+    warnings.extend(standstill(samples, source));
     warnings.extend(slow_start(samples, source));
     (source, warnings)
+}
+
+/// A warning where the clock did not advance during a frame, so that its time is zero.
+fn standstill(samples: &Samples, source: TimingSource) -> Option<String> {
+    let passes = match source {
+        TimingSource::Device => samples.device_ns.as_ref()?,
+        TimingSource::Wall => &samples.wall_ns,
+    };
+    let frames = passes.iter().map(Vec::len).sum::<usize>();
+    let still = passes.iter().flatten().filter(|&&ns| ns == 0).count();
+    (still > 0).then(|| {
+        format!(
+            "the clock did not advance in {still} of {frames} frames, whose times are 0: give a larger --resolution"
+        )
+    })
 }
 
 /// A warning where both clocks tell different stories.

@@ -5,6 +5,8 @@
 
 use super::workload::{Info, Part};
 use crate::error::{Error, Result};
+use crate::guard;
+use crate::names;
 use std::collections::BTreeMap;
 use std::path::Path;
 use toml::{Table, Value};
@@ -38,12 +40,13 @@ impl Preset {
         if let Some((_, text)) = info.presets.iter().find(|(known, _)| *known == name) {
             return Preset::parse(info, name, text);
         }
-        let path = Path::new(name);
+        let path = &*names::file(name);
         if path.extension().is_none() {
             let known: Vec<&str> = info.presets.iter().map(|(name, _)| *name).collect();
             let hint = format!("there are {}; or give a TOML file", known.join(", "));
             return Err(Error::argument("--preset", format!("no preset {name:?} of {}", info.name), hint));
         }
+        guard::read(path);
         let text = std::fs::read_to_string(path)
             .map_err(|e| Error::file(path, None, format!("cannot read: {e}"), "give a preset's TOML file"))?;
         Preset::parse(info, name, &text)
@@ -53,7 +56,7 @@ impl Preset {
         let text = text.trim_start_matches('\u{feff}');
         let file = File {
             info,
-            path: Path::new(name),
+            path: &*names::file(name),
             text,
             example: format!("see presets/{}/{}.toml", info.name, info.presets.first().map_or("", |(name, _)| name)),
         };

@@ -11,7 +11,7 @@ use crate::record::journal::{Journal, RunDocument};
 use crate::record::row::{Row, Samples, Status, TimingSource, Value};
 use crate::record::statistics;
 use crate::record::terminal;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
 /// Columns of every workload, after its axes.
@@ -282,13 +282,31 @@ pub fn terminal(workload: &dyn Workload, journal: &Journal) -> String {
         let others = if others > 0 { format!(" and {others} more") } else { String::new() };
         text += &format!("{}: {}{others}: {}\n", row.status.word(), label(workload, row), row.message);
     }
-    for row in journal.rows.iter().filter(|row| !row.warnings.is_empty()) {
-        text += &format!("warning: {}: {}\n", label(workload, row), row.warnings.join("; "));
+    for (warning, rows) in warnings(journal) {
+        let (first, others) = (label(workload, rows[0]), rows.len() - 1);
+        let others = if others > 0 { format!(" and {others} more") } else { String::new() };
+        text += &format!("warning: {first}{others}: {warning}\n");
     }
     if !info.table_note.is_empty() {
         text += &format!("{}\n", info.table_note);
     }
     text
+}
+
+/// Each warning with the rows that have it, in the order of the first of them.
+fn warnings(journal: &Journal) -> Vec<(&str, Vec<&Row>)> {
+    let mut groups: Vec<(&str, Vec<&Row>)> = Vec::new();
+    let mut index = HashMap::new();
+    for row in &journal.rows {
+        for warning in &row.warnings {
+            let at = *index.entry(warning.as_str()).or_insert_with(|| {
+                groups.push((warning, Vec::new()));
+                groups.len() - 1
+            });
+            groups[at].1.push(row);
+        }
+    }
+    groups
 }
 
 /// The rows without a result, those of equal status and message together.

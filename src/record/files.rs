@@ -1,8 +1,9 @@
 //! Writing derived files: whole or not at all.
 
 use crate::error::{Error, Result};
+use crate::guard;
 use std::fs;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// Writes a file by way of a temporary file in the same folder and a rename, so that a reader never sees half of it and
@@ -10,8 +11,9 @@ use std::path::{Path, PathBuf};
 /// device node by a file would be a nasty surprise.
 ///
 /// # Errors
-/// [`Error::Output`].
+/// [`Error::Output`]; [`Error::Input`] for a file that was read, see [`guard`].
 pub fn replace(path: &Path, content: &[u8]) -> Result<()> {
+    guard::check_output(path)?;
     // A link is followed first: it is its target that is to be replaced.
     let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     if fs::metadata(&path).is_ok_and(|m| !m.is_file()) {
@@ -30,40 +32,6 @@ pub fn replace(path: &Path, content: &[u8]) -> Result<()> {
         let _ = fs::remove_file(&temporary);
         Error::output(&path, source)
     })
-}
-
-/// Refuses to write over a file that is read, under any name or link.
-///
-/// # Errors
-/// [`Error::Input`] that names both.
-pub fn refuse_overwrite<'a>(out: &Path, mut inputs: impl Iterator<Item = &'a Path>) -> Result<()> {
-    match inputs.find(|input| is_same(input, out)) {
-        None => Ok(()),
-        Some(input) => {
-            let problem = format!("it is the same file as {}, which is read", input.display());
-            Err(Error::file(out, None, problem, "write to another file"))
-        }
-    }
-}
-
-/// True for two names of one regular file. What is none, as a terminal, may well be read and written.
-fn is_same(a: &Path, b: &Path) -> bool {
-    match (fs::canonicalize(a), fs::canonicalize(b)) {
-        (Ok(a), Ok(b)) => a.is_file() && (a == b || is_linked(&a, &b)),
-        _ => false,
-    }
-}
-
-#[cfg(unix)]
-fn is_linked(a: &Path, b: &Path) -> bool {
-    use std::os::unix::fs::MetadataExt;
-    let place = |path: &Path| fs::metadata(path).map(|m| (m.dev(), m.ino())).ok();
-    place(a).is_some_and(|a| place(b) == Some(a))
-}
-
-#[cfg(not(unix))]
-fn is_linked(_: &Path, _: &Path) -> bool {
-    false
 }
 
 /// A name in the folder of `path` that no other process uses.
@@ -94,17 +62,25 @@ pub fn create_run_folder(path: &Path) -> Result<()> {
     Ok(())
 }
 
-/// A name as a part of a file's name: letters, digits, dots and single dashes.
-pub fn slug(name: &str) -> String {
-    let mut slug = String::new();
-    for c in name.chars() {
-        if c.is_alphanumeric() || c == '.' {
-            slug.extend(c.to_lowercase());
-        } else if !slug.ends_with('-') {
-            slug.push('-');
+/// Creates a new folder, and its parents: `path`, or where there is something of this name `path-2`, `path-3`, ...
+///
+/// # Errors
+/// [`Error::Output`].
+pub fn create_numbered_folder(path: &Path) -> Result<PathBuf> {
+    if let Some(parent) = path.parent() {
+        fs::create_dir_all(parent).map_err(|source| Error::output(parent, source))?;
+    }
+    let mut folder = path.to_owned();
+    for number in 2.. {
+        match fs::create_dir(&folder) {
+            Ok(()) => break,
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {
+                let mut name = path.file_name().unwrap_or_default().to_owned();
+                name.push(format!("-{number}"));
+                folder = path.with_file_name(name);
+            }
+            Err(source) => return Err(Error::output(&folder, source)),
         }
     }
-    let slug = slug.trim_matches(['-', '.']);
-    // File systems end names at 255 bytes; a scene's name may be any file's.
-    slug.chars().take(80).collect()
+    Ok(folder)
 }

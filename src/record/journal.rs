@@ -3,6 +3,7 @@
 use super::row::{Artifact, Input, Key, Row, SCHEMA, Status, Value};
 use super::run::{End, Provenance, Resumed};
 use crate::error::{Error, Result};
+use crate::guard;
 use crate::record::files;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -192,6 +193,7 @@ impl<'j> RunDocument<'j> {
 /// # Errors
 /// [`Error::Input`] if it cannot be read.
 pub fn bytes_of(path: &Path) -> Result<Vec<u8>> {
+    guard::read(path);
     std::fs::read(path).map_err(|e| Error::file(path, None, format!("cannot read: {e}"), "give the folder of a run"))
 }
 

@@ -3,6 +3,7 @@
 
 use super::{Light, Placement, did_you_mean, procedural};
 use crate::error::{Error, Result};
+use crate::guard;
 use glam::Vec3;
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
@@ -186,6 +187,7 @@ impl Entry {
         if !path.is_file() {
             return Err(Error::file(path, None, "not a regular file", "name a file that holds a scene"));
         }
+        guard::read(path);
         let found = sha256(path).map_err(unreadable)?;
         Ok((found != known).then_some(found))
     }

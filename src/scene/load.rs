@@ -8,6 +8,7 @@ use super::{
     sources,
 };
 use crate::error::{Error, Result};
+use crate::names;
 use glam::DVec3;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -34,7 +35,7 @@ pub fn load_in(spec: &str, folder: Option<&Path>) -> Result<Scene> {
     if let Some(entry) = catalogue::find(name) {
         return load_entry(spec, entry, settings, folder);
     }
-    let path = Path::new(name);
+    let path = &*names::file(name);
     let built_in = is_built_in(spec);
     if !built_in && (reader_of(path).is_some() || name.contains(['/', std::path::MAIN_SEPARATOR]) || path.exists()) {
         let options = Options::parse(spec, settings)?;
@@ -82,12 +83,12 @@ fn load_entry(spec: &str, entry: &catalogue::Entry, settings: &str, folder: Opti
     let path = entry.path_in(folder)?;
     let base = Options::parse(spec, &entry.options)?;
     let options = Options::parse(spec, &format!("{},{settings}", entry.options))?;
-    let name = path.to_string_lossy();
+    let name = names::text(path.as_os_str());
     let mut scene = read(spec, &name, settings, &options)?;
     scene.name = format!("{}{}", entry.name, options.suffix(&base));
     let mut scene = finish(scene, &name, &options)?;
     if let Some(found) = entry.other_hash(&path)? {
-        scene.warnings.push(format!("not the catalogue's file: the SHA-256 of {} is {found}", path.display()));
+        scene.warnings.push(format!("not the catalogue's file: the SHA-256 of {name} is {found}"));
     }
     if scene.lights.is_empty() {
         scene.lights = entry.lights(&scene.placement);
@@ -103,7 +104,7 @@ fn load_entry(spec: &str, entry: &catalogue::Entry, settings: &str, folder: Opti
 
 /// Applies the options to a scene that was read from a file, checks it, and scales it to a comfortable extent.
 fn finish(mut scene: Scene, place: &str, options: &Options) -> Result<Scene> {
-    let path = Path::new(place);
+    let path = &*names::file(place);
     // A cache holds a finished scene, which its reader has checked.
     if is_cache(path) && *options == Options::default() {
         return Ok(scene);
@@ -121,7 +122,7 @@ fn finish(mut scene: Scene, place: &str, options: &Options) -> Result<Scene> {
     scene.size_fault(bounds).map_or(Ok(()), |found| Err(fault(found)))?;
     scene.normalise(bounds);
     // Scaling can move a light out of the range of floats.
-    if let Some(i) = scene.lights.iter().position(|light| !light.position.is_finite()) {
+    if let Some(i) = scene.lights.iter().position(|l| !l.position.distance_squared(bounds.center()).is_finite()) {
         return Err(fault((format!("light {i} is too far away in relation to the scene's extent"), "move it nearer")));
     }
     Ok(scene)
@@ -136,7 +137,7 @@ const READINGS: usize = 5;
 fn read(spec: &str, name: &str, settings: &str, options: &Options) -> Result<Scene> {
     let files = parts(name)?;
     check_settings(spec, settings, &files)?;
-    let whole = Path::new(name);
+    let whole = &*names::file(name);
     let folder = files.first() != Some(&whole.to_owned()) && whole.is_dir();
     if folder {
         sources::folder(whole, &files);
@@ -209,7 +210,7 @@ fn check_settings(spec: &str, settings: &str, files: &[PathBuf]) -> Result<()> {
 
 /// Refuses what a reading of files would refuse before it opens one; see [`super::probe`].
 pub(super) fn check_file(what: &str, name: &str, settings: &str) -> Result<()> {
-    let path = Path::new(name);
+    let path = &*names::file(name);
     if !(reader_of(path).is_some() || name.contains(['/', std::path::MAIN_SEPARATOR]) || path.exists()) {
         return Err(unknown(what));
     }
@@ -265,9 +266,9 @@ fn read_folder(files: &[PathBuf], options: &Options) -> Result<Vec<(PathBuf, Sce
 
 /// The files of one scene: sorted by name for a folder, in the given order for a list.
 fn parts(name: &str) -> Result<Vec<PathBuf>> {
-    let path = Path::new(name);
+    let path = &*names::file(name);
     if !path.exists() && name.contains('+') {
-        return Ok(name.split('+').map(PathBuf::from).collect());
+        return Ok(name.split('+').map(names::file).collect());
     }
     // The reader refuses a folder with the extension of a file.
     if path.is_dir() && reader_of(path).is_none() { files_of_folder(path) } else { Ok(vec![path.to_owned()]) }
@@ -342,19 +343,15 @@ fn append(scene: &mut Scene, mut other: Scene) {
     scene.camera = scene.camera.take().or(other.camera);
 }
 
-/// The name of a scene from a file: the name in the file, which only caches have, otherwise the file's stem.
+/// The name of a scene from a file: the name in the file, which only caches have, otherwise that of its path.
 fn own_name(file: &Path, scene: &Scene) -> String {
-    match file.file_stem() {
-        _ if !scene.name.is_empty() => scene.name.clone(),
-        Some(stem) => stem.to_string_lossy().into_owned(),
-        None => "scene".into(),
-    }
+    if scene.name.is_empty() { names::of_file(file) } else { scene.name.clone() }
 }
 
-/// The name of a scene from a folder; `.` is resolved to the folder's name.
+/// The name of a scene from a folder; one that ends in `.` or `..` is resolved.
 fn folder_name(folder: &Path) -> String {
     let whole = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
-    folder.file_name().or(whole.file_name()).map_or("scene".into(), |name| name.to_string_lossy().into_owned())
+    names::of_file(if folder.file_name().is_some() { folder } else { &whole })
 }
 
 /// A name with a suffix of options; the name in a cache may already have options.
@@ -368,7 +365,7 @@ fn with_suffix(name: &str, suffix: &str) -> String {
 /// Name or path, and what follows its last colon if that is `key=value,...`; a file may have a colon in its name.
 pub(super) fn split_settings(what: &str) -> (&str, &str) {
     match what.rsplit_once(':') {
-        Some((name, settings)) if settings.contains('=') && !Path::new(what).exists() => (name, settings),
+        Some((name, settings)) if settings.contains('=') && !names::file(what).exists() => (name, settings),
         _ => (what, ""),
     }
 }

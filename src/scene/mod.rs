@@ -27,6 +27,7 @@ mod suggest;
 mod text;
 
 use crate::error::{Error, Result};
+use crate::guard;
 use crate::math::{Aabb, Vertex};
 use bytemuck::{Pod, Zeroable};
 use extent::Extent;
@@ -381,5 +382,6 @@ fn read_file(path: &Path) -> Result<Vec<u8>> {
     let metadata = regular_file(path)?;
     let content = std::fs::read(path).map_err(|e| fault(format!("cannot be read: {e}"), "check its permissions"))?;
     sources::read(path, &metadata, &content);
+    guard::read(path);
     Ok(content)
 }

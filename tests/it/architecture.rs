@@ -5,8 +5,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// From the top: a module may use those before it.
-const STAIRCASE: [&str; 14] = [
+const STAIRCASE: [&str; 16] = [
+    "names",
     "error",
+    "guard",
     "threads",
     "math",
     "scene",

@@ -346,7 +346,8 @@ fn a_substitute_structure_is_noted_in_all_outputs() {
     let [scene, csv] = [scene.display().to_string(), folder.path().join("b.csv").display().to_string()];
     let output = run(&format!("build --scene {scene} --structure bvh,ploc-stack --csv {csv}"));
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    assert!(stderr(&output).contains("rtbench: heap ploc-stack: built as bvh: "), "{}", stderr(&output));
+    let notes = stderr(&output);
+    assert!(notes.contains("heap.obj~") && notes.contains(" ploc-stack: built as bvh: "), "{notes}");
     good(&format!("sweep --scene {scene} {TINY_ROWS} --structure bvh,ploc-stack --out {}", out.display()));
     let journal = Journal::read(&out.join(FILE_NAME)).unwrap();
     let notes: Vec<&str> = journal.artifacts.iter().map(|s| s.note.split(':').next().unwrap()).collect();
@@ -403,7 +404,7 @@ fn a_sweep_is_resumed_with_its_original_flags() {
     // Refused: another scene under the same name, other flags, a folder without a run, another command
     std::fs::write(&journal, &whole[..third + 40]).unwrap();
     std::fs::write(&scene, ply.replace("0 0 1\n", "0 0 2\n")).unwrap();
-    one_error(&run(&resume), &["journal.jsonl", "pyramid is not the scene that it was", "begin a new run"]);
+    one_error(&run(&resume), &["journal.jsonl", "pyramid.ply~", "is not the scene that it was", "begin a new run"]);
     one_error(&run(&format!("{resume} --frames 3")), &["--resume", "cannot be used with", "--frames"]);
     one_error(
         &run(&format!("sweep --resume {}", folder.path().display())),

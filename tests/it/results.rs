@@ -7,6 +7,7 @@ use rtbench::Error;
 use rtbench::harness::measure;
 use rtbench::harness::summary::{self, Wide};
 use rtbench::math::{Hit, MISS};
+use rtbench::names;
 use rtbench::record::journal::Record;
 use rtbench::record::journal::{Journal, JournalWriter};
 use rtbench::record::row::{SCHEMA, Samples, Status, TimingSource};
@@ -332,9 +333,9 @@ fn the_colour_map_is_ordered() {
 
 #[test]
 fn names_become_file_names() {
-    assert_eq!(files::slug("llvmpipe (LLVM 15.0.6, 256 bits)"), "llvmpipe-llvm-15.0.6-256-bits");
-    assert_eq!(files::slug("../../etc/passwd"), "etc-passwd");
-    assert!(files::slug(&"x".repeat(1000)).len() <= 80);
+    assert_eq!(names::slug("llvmpipe (LLVM 15.0.6, 256 bits)"), "llvmpipe-llvm-15.0.6-256-bits");
+    assert_eq!(names::slug("../../etc/passwd"), "etc-passwd");
+    assert!(names::slug(&"x".repeat(1000)).len() <= 80);
 }
 
 #[test]

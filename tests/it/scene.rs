@@ -20,6 +20,7 @@ mod obj;
 mod placement;
 mod ply;
 
+use crate::support::short;
 use rtbench::scene::{self, Scene};
 use rtbench::{Error, Result};
 use std::path::PathBuf;
@@ -176,7 +177,7 @@ fn options_may_follow_the_name_of_a_file() {
     for stays in [format!("{file}:time=2"), "hall:triangles=15000".to_owned(), "hall".to_owned()] {
         assert_eq!(scene::at_time(&stays, 3.0), stays);
     }
-    assert_eq!((plain.name.as_str(), turned.name.as_str()), ("cube", "cube:up=z,scale=2"));
+    assert_eq!((short(&plain.name), short(&turned.name)), ("cube".into(), "cube:up=z,scale=2".into()));
     let v = |scene: &Scene, i: usize| scene.vertices[i].position;
     for i in 0..plain.vertices.len() {
         let p = v(&plain, i);

@@ -8,6 +8,12 @@ use rtbench::scene::{Light, Material, Scene, Triangle};
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
+/// A scene's name with the stems of its files only: folders of tests have other names each time.
+pub fn short(name: &str) -> String {
+    let (files, options) = name.split_at(name.find(':').unwrap_or(name.len()));
+    files.split('+').map(rtbench::names::stem).collect::<Vec<_>>().join("+") + options
+}
+
 /// Numbers between -1 and 1 from a small generator of our own: the same on every machine.
 pub fn random(seed: u32) -> impl FnMut() -> f32 {
     let mut state = seed.wrapping_mul(0x9e37_79b9) ^ 0x85eb_ca6b;

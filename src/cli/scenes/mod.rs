@@ -4,10 +4,10 @@ mod fetch;
 mod info;
 mod list;
 
-use super::library::LibraryArguments;
+use super::library::{LibraryArguments, file_name};
 use super::output;
 use crate::error::{Error, Result};
-use crate::record::files;
+use crate::guard;
 use crate::scene::cache;
 use clap::Subcommand;
 use std::path::PathBuf;
@@ -24,7 +24,7 @@ pub enum Command {
     /// Load a scene and describe it
     Info {
         /// Scene file, or name of a scene, with options
-        #[arg(value_name = "FILE|NAME[:KEY=VALUE,..]")]
+        #[arg(value_name = "FILE|NAME[:KEY=VALUE,..]", value_parser = file_name())]
         scene: String,
         #[command(flatten)]
         library: LibraryArguments,
@@ -32,7 +32,7 @@ pub enum Command {
     /// Write a loaded scene to a binary cache, which loads faster
     Convert {
         /// Scene file, or name of a scene, with options
-        #[arg(value_name = "FILE|NAME[:KEY=VALUE,..]")]
+        #[arg(value_name = "FILE|NAME[:KEY=VALUE,..]", value_parser = file_name())]
         scene: String,
         /// Cache file to write
         #[arg(value_name = "OUT.rtb")]
@@ -78,7 +78,7 @@ fn convert(name: &str, out: &std::path::Path, library: &LibraryArguments) -> Res
         return Err(Error::argument(out.display().to_string(), problem, "the file's extension decides its format"));
     }
     let (scene, sources) = library.load_with_sources(name)?;
-    files::refuse_overwrite(out, sources.paths())?;
+    guard::check_output(out)?;
     cache::write(&scene, &sources, out)?;
     let (triangles, vertices) = (scene.triangles.len(), scene.vertices.len());
     output::print(&format!("{}: {}, {triangles} triangles, {vertices} vertices\n", out.display(), scene.name))

@@ -144,6 +144,16 @@ pub fn choose<'a>(adapters: &'a [Adapter], selector: &Selector) -> Result<&'a Ad
     Err(Error::argument("--adapter", "no adapter fits", format!("there are: {}", list.join(", "))))
 }
 
+/// Positions of the adapters whose names fit a choice by name, in any case; empty for other choices.
+pub fn fitting(names: &[&str], selector: &Selector) -> Vec<usize> {
+    let part = match selector {
+        Selector::Name(part) => part.to_lowercase(),
+        Selector::Index(number) if *number >= names.len() => number.to_string(),
+        Selector::Best | Selector::Index(_) => return Vec::new(),
+    };
+    (0..names.len()).filter(|&index| names[index].to_lowercase().contains(&part)).collect()
+}
+
 fn find(infos: &[&DeviceInfo], selector: &Selector) -> Option<usize> {
     let rank = |info: &DeviceInfo| match info.device_type {
         DeviceType::DiscreteGpu => 0,
@@ -153,15 +163,13 @@ fn find(infos: &[&DeviceInfo], selector: &Selector) -> Option<usize> {
         DeviceType::SoftwareRasteriser => 4,
         DeviceType::CpuTwin => 5,
     };
-    let named = |part: &str| {
-        let part = part.to_lowercase();
-        infos.iter().position(|info| info.name.to_lowercase().contains(&part))
-    };
     match selector {
         Selector::Best => (0..infos.len()).min_by_key(|&index| rank(infos[index])),
         Selector::Index(index) if *index < infos.len() => Some(*index),
-        Selector::Index(number) => named(&number.to_string()),
-        Selector::Name(part) => named(part),
+        Selector::Index(_) | Selector::Name(_) => {
+            let names: Vec<&str> = infos.iter().map(|info| info.name.as_str()).collect();
+            fitting(&names, selector).first().copied()
+        }
     }
 }
 
@@ -187,12 +195,16 @@ mod tests {
             info("Small 770", DeviceType::IntegratedGpu),
             info("Large 4090", DeviceType::DiscreteGpu),
         ];
-        let infos: Vec<&DeviceInfo> = infos.iter().collect();
+        let infos: [&DeviceInfo; 3] = infos.each_ref();
         for (text, expected) in [("1", Some(1)), ("770", Some(1)), ("large", Some(2)), ("3", None), ("arc", None)] {
             assert_eq!(find(&infos, &text.parse().unwrap()), expected, "{text}");
         }
         assert_eq!(find(&infos, &Selector::Best), Some(2));
         assert_eq!(find(&infos[..1], &Selector::Best), Some(0));
         assert_eq!(find(&[], &Selector::Best), None);
+        for (text, expected) in [("LL", &[0, 1][..]), ("0", &[]), ("4090", &[2]), ("arc", &[])] {
+            let names = infos.each_ref().map(|info| info.name.as_str());
+            assert_eq!(fitting(&names, &text.parse().unwrap()), expected, "{text}");
+        }
     }
 }

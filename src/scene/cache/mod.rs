@@ -21,6 +21,7 @@ use super::extent::Extent;
 use super::sources::{self, SourceFile, SourceKind};
 use super::{Light, Material, Options, Placement, Pose, Scene, SceneCamera, Triangle, load_in};
 use crate::error::{Error, Result};
+use crate::guard;
 use crate::math::Vertex;
 use bytemuck::Zeroable;
 use glam::{DVec3, Vec3};
@@ -181,6 +182,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
         return Err(fault("not a regular file", "name a file that holds a scene"));
     }
     let mut file = File::open(path).map_err(unreadable)?;
+    guard::read(path);
     let metadata = file.metadata().map_err(unreadable)?;
     let mut header = Header::zeroed();
     let start = &mut bytemuck::bytes_of_mut(&mut header)[..metadata.len().min(size_of::<Header>() as u64) as usize];

@@ -1,11 +1,12 @@
 //! Pictures of scenes and their step maps, from the runs' folders.
 
 use crate::error::Result;
+use crate::names;
 use crate::record::picture::{FOLDER, STEPS};
 use crate::report::embed::Pictures;
 use crate::report::html::escape;
 use crate::sources::runs::RecordedRun;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The caption of a step map: a sweep renders all of them with the same structure.
 const STEP_MAP: &str = "steps of bvh-stack (one ray per thread) per pixel, all ray types: the brighter, the more";
@@ -29,9 +30,12 @@ pub fn write(runs: &[RecordedRun]) -> Result<String> {
     if scenes.is_empty() {
         return Ok(format!("<p class=\"note\">The runs' folders have no pictures.</p>\n{notes}"));
     }
-    let pair = |scene: &&str| {
-        let picture = pictures.figure(scene, scene, "picture");
-        let step_map = pictures.figure(&format!("{scene}{STEPS}"), scene, STEP_MAP);
+    let recorded = runs.iter().flat_map(|run| &run.journal.structures).map(|structure| structure.scene.name.as_str());
+    let recorded: BTreeMap<String, &str> = recorded.map(|name| (names::distinct_slug(name), name)).collect();
+    let pair = |file: &&str| {
+        let scene = recorded.get(*file).unwrap_or(file);
+        let picture = pictures.figure(file, scene, "picture");
+        let step_map = pictures.figure(&format!("{file}{STEPS}"), scene, STEP_MAP);
         format!("<h3>{}</h3>\n<div class=\"pair\">\n{picture}{step_map}</div>\n", escape(scene))
     };
     Ok(scenes.iter().map(pair).collect::<String>() + &notes)

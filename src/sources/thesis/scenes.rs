@@ -1,6 +1,7 @@
 //! The nine scenes of the thesis, and which of them a recorded scene is, if any.
 
 use crate::camera;
+use crate::names;
 use crate::scene::{Options, catalogue};
 use std::fmt;
 
@@ -70,9 +71,9 @@ impl ThesisScene {
         }
     }
 
-    /// The scene of this name; options behind it (`museum6:time=3`) do not matter.
+    /// The scene of this name, or of a file of this stem; options behind it (`museum6:time=3`) do not matter.
     pub fn named(name: &str) -> Option<ThesisScene> {
-        let name = name.split(':').next().unwrap_or(name).to_lowercase();
+        let name = names::stem(name).to_lowercase();
         ThesisScene::ALL.into_iter().find(|s| s.name() == name || s.aliases().contains(&name.as_str()))
     }
 
@@ -152,7 +153,7 @@ impl SceneKey {
             SceneKey::Along(scene, ..) => scene.base_scene(),
             SceneKey::Other(name, _) => {
                 let word = name.split([':', ' ']).next().unwrap_or(name);
-                ThesisScene::named(word).or_else(|| ThesisScene::named(word.split_once('-')?.0))
+                ThesisScene::named(word).or_else(|| ThesisScene::named(names::stem(word).split_once('-')?.0))
             }
         }
     }
@@ -203,13 +204,14 @@ fn is_own_path(name: &str, key: &SceneKey, path: &str, shadows: bool) -> bool {
     if path.is_empty() || path == bare {
         return true;
     }
-    if let Some(own) = catalogue::find(bare).and_then(|entry| entry.camera_path.as_deref()) {
+    let stem = names::stem(bare);
+    if let Some(own) = catalogue::find(stem).and_then(|entry| entry.camera_path.as_deref()) {
         return path == own;
     }
     // The files of BART have cameras
     let has_own = match key.base_scene() {
         Some(scene) => matches!(scene, Robots | Museum | Kitchen),
-        None => camera::names().contains(&bare),
+        None => camera::names().contains(&stem),
     };
     !has_own && path == if shadows { "light-orbit" } else { "orbit" }
 }

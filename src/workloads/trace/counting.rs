@@ -5,9 +5,36 @@ use super::rays::Config;
 use super::record::CounterSums;
 use crate::camera::View;
 use crate::error::Result;
+use crate::math::MISS;
 
-/// Renders every frame once with the counting kernel. Returns the sums by ray type, and the first frame, RGBA8.
-/// `frame_done` is asked after each frame whether to go on.
+/// What the counting kernel found along a path.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Counted {
+    /// Sums by ray type.
+    pub sums: [CounterSums; 3],
+    /// The first frame, RGBA8.
+    pub first_image: Vec<u8>,
+    /// Frames in which no primary ray hits anything.
+    pub empty: Vec<usize>,
+    /// Frames in which every primary ray hits something nearer than the surface epsilon.
+    pub blocked: Vec<usize>,
+}
+
+impl Counted {
+    /// What is odd about the frames: a camera that looks past the scene, or stands in a surface.
+    pub fn warnings(&self, frames: usize) -> Vec<String> {
+        let what = "no primary ray hits the scene";
+        let near = "every primary ray hits a surface directly at the camera";
+        let of = |found: &[usize], what: &str| {
+            let first = found.first()?;
+            Some(format!("{what} in {} of {frames} frames (the first: {first}): check the camera path", found.len()))
+        };
+        [of(&self.empty, what), of(&self.blocked, near)].into_iter().flatten().collect()
+    }
+}
+
+/// Renders every frame once with the counting kernel. `epsilon` is the surface epsilon. `frame_done` is asked after
+/// each frame whether to go on.
 ///
 /// # Errors
 /// The device's, or those of `frame_done`.
@@ -15,23 +42,32 @@ pub fn count(
     tracer: &mut dyn Prepared,
     config: Config,
     views: &[View],
-    size: Size,
+    (size, epsilon): (Size, f32),
     frame_done: &mut dyn FnMut() -> Result<()>,
-) -> Result<([CounterSums; 3], Vec<u8>)> {
-    let mut sums = [CounterSums::default(); 3];
-    let mut first_image = Vec::with_capacity(size.pixels() * 4);
+) -> Result<Counted> {
+    let mut counted = Counted { first_image: Vec::with_capacity(size.pixels() * 4), ..Counted::default() };
     for (frame, view) in views.iter().enumerate() {
+        let (mut hits, mut farthest) = (0, 0.0f32);
         tracer.counted(config, view, size, &mut |_, pixels| {
             for pixel in pixels {
-                for (sum, counters) in sums.iter_mut().zip(&pixel.counters) {
+                if pixel.pixel.triangle != MISS {
+                    hits += 1;
+                    farthest = farthest.max(f32::from_bits(pixel.t));
+                }
+                for (sum, counters) in counted.sums.iter_mut().zip(&pixel.counters) {
                     sum.add(counters);
                 }
                 if frame == 0 {
-                    first_image.extend_from_slice(&pixel.pixel.rgba.to_le_bytes());
+                    counted.first_image.extend_from_slice(&pixel.pixel.rgba.to_le_bytes());
                 }
             }
         })?;
+        if hits == 0 {
+            counted.empty.push(frame);
+        } else if hits == size.pixels() && farthest < epsilon {
+            counted.blocked.push(frame);
+        }
         frame_done()?;
     }
-    Ok((sums, first_image))
+    Ok(counted)
 }

@@ -1,5 +1,6 @@
 //! A scene with its camera paths, its reference answers, and the structures that are built of it.
 
+use super::backend::surface_epsilon;
 use super::case::TraceCase;
 use super::rays::Config;
 use super::record::{Memory, PathRecord, PlacementRecord, SceneRecord, WORKLOAD, structure_metrics};
@@ -22,6 +23,8 @@ pub(super) struct TraceInput<'a> {
     pub(super) context: &'a Context<'a>,
     decorate: Option<&'a Decorate>,
     pub(super) scene: Arc<Scene>,
+    /// Surface epsilon, in scene units.
+    pub(super) epsilon: f32,
     pub(super) record: SceneRecord,
     pub(super) paths: Vec<Path>,
     /// The tree through which references are traced; brute force confirms them (see [`super::verify`]).
@@ -74,6 +77,7 @@ impl<'a> TraceInput<'a> {
             context,
             decorate,
             record: scene_record(&scene),
+            epsilon: surface_epsilon(scene.bounds()),
             paths,
             verifier: RefCell::new(Verifier::new(scene.clone(), reference.clone())?),
             scene,

@@ -10,7 +10,7 @@ use crate::camera::View;
 use crate::device::Device;
 use crate::error::{Error, Result};
 use crate::harness::workload::Event;
-use crate::record::files;
+use crate::names;
 use crate::record::picture::{self, FOLDER, STEPS};
 use std::path::{Path, PathBuf};
 
@@ -59,7 +59,7 @@ pub(super) fn take(input: &TraceInput, device: &Device) -> Result<()> {
 
 /// Paths of a scene's pictures in a run's folder: the image, and the heat map of its steps.
 fn places(out: &Path, scene: &str) -> [PathBuf; 2] {
-    let name = files::slug(scene);
+    let name = names::distinct_slug(scene);
     ["", STEPS].map(|end| out.join(FOLDER).join(format!("{name}{end}.png")))
 }
 

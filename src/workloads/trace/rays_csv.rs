@@ -1,6 +1,7 @@
 //! Rays from a CSV file and hits to one: how rtbench is held against another engine.
 
 use crate::error::{Error, Result};
+use crate::guard;
 use crate::math::{Hit, MISS};
 use crate::record::files;
 use crate::scene::Placement;
@@ -57,6 +58,7 @@ pub fn read(path: &Path) -> Result<Vec<GivenRay>> {
 /// [`Error::Input`] with file and line for a missing column, a missing or unusable number, or a direction without
 /// length.
 pub fn read_exact(path: &Path) -> Result<Vec<ExactRay>> {
+    guard::read(path);
     let mut reader = csv::ReaderBuilder::new()
         .flexible(true)
         .trim(csv::Trim::All)

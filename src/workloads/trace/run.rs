@@ -12,8 +12,9 @@ use crate::camera::View;
 use crate::device::{DeviceInfo, FrameTime, KernelInfo};
 use crate::error::{Error, Result};
 use crate::harness::workload::{Case, Event, Run, Verdict};
+use crate::names;
+use crate::record::picture;
 use crate::record::row::{Artifact, Metric};
-use crate::record::{files, picture};
 use std::collections::HashMap;
 
 /// The small image on which kernels are compared with their twins: not a multiple of the 8x8 pixels of a work-group, so
@@ -97,7 +98,7 @@ impl<'a> TraceRun<'a> {
             let (scene, structure) = (&self.input.record.name, self.selection.full_name());
             let (config, path) = (case.config, &case.camera_path);
             let name = format!("{scene}-{structure}-{config:?}-{width}x{height}-frame{frame}-{path}");
-            let file = format!("differences/{}.png", files::slug(&name));
+            let file = format!("differences/{}.png", names::distinct_slug(&name));
             let folder = context.out.join("differences");
             std::fs::create_dir_all(&folder).map_err(|source| Error::output(&folder, source))?;
             picture::write_png(&context.out.join(&file), width, height, difference)?;
@@ -167,12 +168,14 @@ impl Run for TraceRun<'_> {
         let (context, work) = (self.input.context, case.work / (self.input.context.settings.passes as u64 + 1));
         let case = TraceCase::parse(case)?;
         let views = &self.input.path(&case)?.views;
-        let (sums, image) = counting::count(self.tracer.as_mut(), case.config, views, case.size, &mut || {
+        let shape = (case.size, self.input.epsilon);
+        let counted = counting::count(self.tracer.as_mut(), case.config, views, shape, &mut || {
             context.emit(Event::Work(work / views.len() as u64));
             context.check_interrupt()
         })?;
-        let mut verdict = Verdict { metrics: counter_metrics(&sums), ..Verdict::default() };
-        compare_kernels(self.exact, &std::mem::take(&mut self.first_image), &image, &mut verdict);
+        let mut verdict = Verdict { metrics: counter_metrics(&counted.sums), ..Verdict::default() };
+        compare_kernels(self.exact, &std::mem::take(&mut self.first_image), &counted.first_image, &mut verdict);
+        verdict.warnings.extend(counted.warnings(views.len()));
         Ok(verdict)
     }
 

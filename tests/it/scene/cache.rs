@@ -1,6 +1,7 @@
 //! Tests of the binary cache: it restores the whole scene; foreign, stale, truncated and corrupt caches are refused.
 
 use super::refusal;
+use crate::support::short;
 use glam::Vec3;
 use rtbench::scene::cache::{self, Sources};
 use rtbench::scene::{self, Light, Pose, Scene, SceneCamera};
@@ -198,7 +199,7 @@ fn every_source_file_is_checked() {
         let message = refusal(load(&cached));
         assert!(message.contains("stale") && message.contains(words), "{message}");
     };
-    assert_eq!(convert(&list, &cached).name, "a+c");
+    assert_eq!(short(&convert(&list, &cached).name), "a+c");
     load(&cached).unwrap();
     files.write("a.mtl", b"newmtl m\nKd 0 1 0\n");
     stale("a.mtl has changed");
@@ -227,7 +228,7 @@ fn a_cache_of_a_cache_depends_on_the_same_source_files() {
     let (source, y, z) = (files.path("a.ply"), files.path("y.rtb"), files.path("z.rtb"));
     let scaled = format!("{}:scale=2", text(&y));
     convert(text(&source), &y);
-    assert_eq!(convert(&scaled, &z).name, "a:scale=2");
+    assert_eq!(short(&convert(&scaled, &z).name), "a:scale=2");
     // The same content, written at another time
     touch(&source, 1000);
     convert(text(&source), &y);

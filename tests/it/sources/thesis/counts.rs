@@ -36,7 +36,7 @@ fn counted(
     let built = selection.build(&scene, 0).unwrap();
     let cpu = CpuBackend::new(0).unwrap();
     let mut prepared = cpu.prepare(&scene, &*built.structure, selection.method()).unwrap();
-    let (sums, _) = counting::count(prepared.as_mut(), config, &views, SIZE, &mut || Ok(())).unwrap();
+    let sums = counting::count(prepared.as_mut(), config, &views, (SIZE, 0.0), &mut || Ok(())).unwrap().sums;
     Some(sums)
 }
 
