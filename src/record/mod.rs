@@ -9,4 +9,5 @@ pub mod picture;
 pub mod row;
 pub mod run;
 pub mod statistics;
+pub mod stream;
 pub mod terminal;

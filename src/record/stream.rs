@@ -8,9 +8,9 @@ use super::journal::{FILE_NAME, folder_of};
 use super::row::{SCHEMA, Settings, Status};
 use super::run::{End, Provenance};
 use crate::error::{Error, Result};
-use foldhash::HashMap;
+use foldhash::fast::RandomState;
 use line::{ArtifactLine, InputLine, Line, RowLine};
-use std::collections::HashMap as StdHashMap;
+use std::collections::HashMap;
 use std::fs::{File, TryLockError};
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -23,7 +23,7 @@ pub type Name = u32;
 #[derive(Debug, Default)]
 pub struct Names {
     texts: Vec<Arc<str>>,
-    known: HashMap<Arc<str>, Name>,
+    known: HashMap<Arc<str>, Name, RandomState>,
 }
 
 impl Names {
@@ -166,7 +166,7 @@ struct Reader<'a> {
     artifacts: Vec<LeanArtifact>,
     rows: Vec<LeanRow>,
     /// Filled once the run is resumed: only then a case can be measured again.
-    known: Option<StdHashMap<RowKey, usize>>,
+    known: Option<HashMap<RowKey, usize>>,
     end: Option<End>,
 }
 
@@ -199,7 +199,7 @@ impl<'a> Reader<'a> {
         if self.number == 1 {
             self.check_schema(bytes)?;
         }
-        let line = match serde_json::from_slice::<Line>(bytes) {
+        let line = match line::parse(bytes) {
             Ok(line) => line,
             Err(_) if !bytes.ends_with(b"\n") && self.number > 1 => {
                 self.cut_off = true;
@@ -223,7 +223,7 @@ impl<'a> Reader<'a> {
             (Line::Artifact(artifact), _) => self.artifact(&artifact),
             (Line::Row(row), _) => self.row(&row),
             (Line::End(end), _) => self.end = Some(end),
-            (Line::Resumed(_), _) => self.resumed(),
+            (Line::Resumed, _) => self.resumed(),
         }
         Ok(())
     }
