@@ -276,14 +276,9 @@ impl<'a> Reader<'a> {
         };
         let resume = format!("rtbench {} --resume {} measures the rest", provenance.workload, folder.display());
         match self.end {
-            Some(end) if end.complete && !self.cut_off => Ok(LeanRun {
-                folder,
-                provenance,
-                inputs: self.inputs,
-                artifacts: self.artifacts,
-                rows: self.rows,
-                end,
-            }),
+            Some(end) if end.complete && !self.cut_off => {
+                Ok(LeanRun { folder, provenance, inputs: self.inputs, artifacts: self.artifacts, rows: self.rows, end })
+            }
             Some(_) => Err(Error::file(self.path, None, "the run ended before all rows were measured", resume)),
             None => Err(Error::file(self.path, None, "the run has not ended: it has no last line", resume)),
         }

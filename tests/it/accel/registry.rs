@@ -104,7 +104,11 @@ fn an_option_without_effect_is_refused() {
         let line = error.to_string();
         assert!(line.contains(why) && line.contains("leave"), "{line}");
     }
-    assert_eq!(selection("kdtree:search=restart,stack=4"), selection("kdtree:search=restart"), "a default asks nothing");
+    assert_eq!(
+        selection("kdtree:search=restart,stack=4"),
+        selection("kdtree:search=restart"),
+        "a default asks nothing"
+    );
 }
 
 #[test]

@@ -122,7 +122,8 @@ fn ranks_have_the_probabilities_of_mann_and_whitney() {
     assert_eq!(mann_whitney(&[], &[1.0]), 1.0);
     // Where the distribution is no longer counted, it goes on without a step: 12 + 12 values are counted, 13 + 12 not
     let side = |n: usize, from: f64| -> Vec<f64> { (0..n).map(|i| from + i as f64).collect() };
-    let (counted, normal) = (mann_whitney(&side(12, 0.0), &side(12, 5.5)), mann_whitney(&side(13, 0.0), &side(12, 6.0)));
+    let (counted, normal) =
+        (mann_whitney(&side(12, 0.0), &side(12, 5.5)), mann_whitney(&side(13, 0.0), &side(12, 6.0)));
     assert!((counted / normal - 1.0).abs() < 0.25, "{counted} {normal}");
 }
 
