@@ -3,12 +3,14 @@
 mod accel; // builders x degenerate inputs, validation, memory model, determinism
 mod architecture; // who may use whom, and which files may use wgpu, clocks and output
 mod camera; // camera paths: files, thinning, fitting, errors
+mod changes; // compare, gate, bless and ab as a user runs them
 mod cli; // the program as a user runs it: outputs, exit codes, broken input
 mod compare; // pairs, judgements and statistics against known answers
 mod device; // frames of several passes, indirect dispatch, textures, features
 mod exact; // the ray/triangle test against exact arithmetic
 mod fakes; // records with known content, a device that breaks on demand
 mod identities; // hashes of kernels and readers do not depend on comments
+mod journals; // journals of any number of rows
 mod kernels; // every kernel variant through naga, struct layouts, no GPU
 mod language; // comments and documents are at most 120 columns wide
 mod meshes; // closed meshes, and rays at their vertices and edges
