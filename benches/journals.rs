@@ -34,7 +34,8 @@ fn tables(folder: &Path) -> usize {
 }
 
 fn main() {
-    let sizes: &[usize] = if std::env::args().any(|arg| arg == "--bench") { &[10_000, 20_000, 100_000] } else { &[300] };
+    let sizes: &[usize] =
+        if std::env::args().any(|arg| arg == "--bench") { &[10_000, 20_000, 100_000] } else { &[300] };
     let folder = tempfile::tempdir().expect("a folder");
     for &rows in sizes {
         let paths = ["old", "new"].map(|name| folder.path().join(format!("{name}-{rows}")));

@@ -281,7 +281,7 @@ fn budgets_are_a_persons_and_times_are_judged_only_with_one() {
     slower([3_000_000, 3_000_000]);
     assert!(gated.gate(1).contains("frame_ms: 1.0000 -> 3.0000"));
     // The noise of both sides explains it
-    slower([1_000_000, 5_000_000]);
+    slower([1_000_000, 2_800_000]);
     assert!(gated.gate(0).contains("ambiguous: "));
     gated.gate_with(1, &["--strict"]);
 }
@@ -305,7 +305,7 @@ fn what_cannot_be_judged_is_one_error_and_nothing_is_overwritten() {
     let broken: [(String, String); 7] = [
         (good.replace("rtbench-baseline/1", "rtbench-baseline/9"), ":2: schema \"rtbench-baseline/9\"".into()),
         (good.replacen("\"tests\": ", "\"tests\": -", 1), format!(":{}: no baseline", line("\"tests\": "))),
-        (good.replacen("\"rows\": {", "\"rows\": [", 1), format!(":{}", line("\"rows\": {"))),
+        (good.replacen("\"rows\": {", "\"rows\" {", 1), format!(":{}", line("\"rows\": {"))),
         (
             good.replacen("\"budgets\": {}", "\"budgets\": {\"innner\": {\"absolute\": 1}}", 1),
             "there is no quantity 'innner'".into(),
@@ -329,7 +329,6 @@ fn what_cannot_be_judged_is_one_error_and_nothing_is_overwritten() {
     std::fs::write(&journal, original.replace("\"workload\":\"sweep\"", "\"workload\":\"spheres\"")).unwrap();
     assert!(gated.gate(2).contains("it is of `rtbench sweep`"));
     assert!(gated.bless(2).contains("it is of `rtbench sweep`"));
-    let hash = original.split("\"scene\":\"").nth(2).and_then(|t| t.split('"').next()).unwrap_or_default().to_owned();
     gated.edit(|record| {
         if record["record"] == "row" {
             record["key"]["workload"] = json!("sweep");
@@ -340,7 +339,7 @@ fn what_cannot_be_judged_is_one_error_and_nothing_is_overwritten() {
         true
     });
     let scene = gated.gate(2);
-    assert!(scene.contains("scene of") && scene.contains("is not the one of the baseline"), "{hash} {scene}");
+    assert!(scene.contains("scene of") && scene.contains("is not the one of the baseline"), "{scene}");
     std::fs::write(&journal, &original).unwrap();
     gated.edit(|record| record["record"] != "end");
     assert!(gated.gate(2).contains("the run has not ended"));

@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 /// A and B are values of axes, AXIS=VALUE or AXIS=VALUE;AXIS=VALUE; all other axes are flags of the workload after --,
 /// and every combination of them is a case. With --exe, whole processes of two builds are measured instead. Each round
 /// measures A, B and A again, in an order that reverses from round to round; its times are in OUT/rounds.jsonl as soon
-/// as it has ended. What A differs from itself is the false-alarm band, within which nothing is called faster or slower.
+/// as it has ended. What A differs from itself is the false-alarm band: nothing within it is called faster or slower.
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {

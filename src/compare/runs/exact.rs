@@ -69,7 +69,7 @@ pub fn compare(
     compared
 }
 
-/// Calls `each` with the values of each name on both sides. Rows list their quantities in the same order, nearly always.
+/// Calls `each` with the values of each name on both sides. Rows mostly list them in the same order.
 fn merge<T: Copy>(
     old: &[(Name, T)],
     new: &[(Name, T)],

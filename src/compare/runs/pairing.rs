@@ -3,7 +3,7 @@
 use super::exact;
 use super::verdict::{self, Verdict, apart};
 use super::{Comparison, Mean, Options, PairedRow, Side};
-use crate::compare::conditions::{ComparedRun, Difference, differences};
+use crate::compare::conditions::{ComparedRun, Difference, GENERAL, differences};
 use crate::error::{Error, Result};
 use crate::record::row::Status;
 use crate::record::statistics::{geometric_mean, median};
@@ -70,7 +70,7 @@ pub fn compare(names: &mut Names, runs: Vec<ComparedRun>, sides: Vec<Side>, opti
             pairs += 1;
             like += usize::from(outcome.unlike.iter().all(|unlike| options.across.contains(&unlike.condition)));
             let is_same_content = outcome.unlike.iter().all(|unlike| {
-                super::super::conditions::GENERAL.contains(&unlike.condition.as_str())
+                GENERAL.contains(&unlike.condition.as_str())
                     || options.across.contains(&unlike.condition)
             });
             let is_one_driver = !outcome.unlike.iter().any(|unlike| ["device", "driver"].contains(&&*unlike.condition));

@@ -6,8 +6,8 @@
 //! over frames of MAD / frame time**, MAD being the median absolute deviation of a frame's passes from its median,
 //! unscaled. It is in percent, and unknown after a single pass. Nothing is ever discarded.
 //!
-//! Two contestants are compared by *paired ratios* where each round measured both ([`paired_ratio`]), and by ranks where they
-//! were measured apart ([`unpaired_ratio`]).
+//! Two contestants are compared by *paired ratios* where each round measured both ([`paired_ratio`]), and by ranks
+//! where they were measured apart ([`unpaired_ratio`]).
 
 mod paired;
 mod unpaired;

@@ -36,8 +36,8 @@ pub fn unpaired_ratio(above: &[f64], below: &[f64], alpha: f64) -> Option<Unpair
     Some(Unpaired { ratio, p: mann_whitney(above, below), has_interval: rank > 0 })
 }
 
-/// The rank, from 1, of the interval's lower end among all quotients: the largest `k` for which the statistic U is below
-/// `k` with a probability of at most `alpha / 2`; 0 if there is none.
+/// The rank, from 1, of the interval's lower end among all quotients: the largest `k` for which the statistic U is
+/// below `k` with a probability of at most `alpha / 2`; 0 if there is none.
 fn interval_rank(m: usize, n: usize, alpha: f64) -> usize {
     if m + n > COUNTED {
         let (m, n) = (m as f64, n as f64);
