@@ -1,5 +1,6 @@
 //! Under which conditions a row was measured. Rows of unlike conditions are not compared, unless the user asks for it.
 
+use crate::device::DeviceType;
 use crate::error::{Error, Result};
 use crate::record::run::Provenance;
 use crate::record::stream::{LeanRow, LeanRun, Names};
@@ -30,7 +31,8 @@ pub fn devices(provenance: &Provenance) -> Vec<DeviceIdentity> {
                 name += &format!(", {threads} threads");
             }
         }
-        if info.checked {
+        // The twins always have Rust's checks, which are not wgpu's
+        if info.checked && info.device_type != DeviceType::CpuTwin {
             name += ", with shader checks";
         }
         let driver = if info.driver.is_empty() { info.backend.clone() } else { info.driver.clone() };

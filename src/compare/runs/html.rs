@@ -58,10 +58,10 @@ pub fn figure(comparison: &Comparison) -> Result<Option<Figure>> {
     // A line of a few hundred points is as good as one of a hundred thousand
     let step = ratios.len().div_ceil(400);
     let points = ratios.iter().enumerate().filter(|(index, _)| index % step == 0 || index + 1 == ratios.len());
-    let points: Vec<(f64, f64)> = points.map(|(index, ratio)| ((index + 1) as f64, *ratio)).collect();
+    let points: Vec<(f64, f64)> = points.map(|(index, ratio)| (100.0 * (index + 1) as f64 / count, *ratio)).collect();
     let mut panels = vec![Panel {
         title: "all rows, sorted".into(),
-        x: Axis::of_sizes("rank of the row", [1.0, count]),
+        x: Axis::of_values("share of the rows [%]", false, [100.0]),
         y: Axis::of_values("new time / old time", false, [most, 1.0]),
         series: vec![
             Series { label: "ratio".into(), style: 0, faint: false, points, ringed: None },
@@ -69,7 +69,7 @@ pub fn figure(comparison: &Comparison) -> Result<Option<Figure>> {
                 label: "equal".into(),
                 style: 6,
                 faint: true,
-                points: vec![(1.0, 1.0), (count, 1.0)],
+                points: vec![(0.0, 1.0), (100.0, 1.0)],
                 ringed: None,
             },
         ],
@@ -82,7 +82,7 @@ pub fn figure(comparison: &Comparison) -> Result<Option<Figure>> {
         let bars = means.iter().enumerate().map(|(index, mean)| Bar {
             label: "geometric mean".into(),
             style: 0,
-            span: (index as f64 + 0.2, index as f64 + 0.8),
+            span: (index as f64 - 0.3, index as f64 + 0.3),
             mean: mean.ratio,
             whiskers: (mean.ratio, mean.ratio),
         });
@@ -93,7 +93,12 @@ pub fn figure(comparison: &Comparison) -> Result<Option<Figure>> {
         let end = means.len() as f64;
         panels.push(Panel {
             title: "geometric means".into(),
-            x: Axis { label: String::new(), log: false, range: (0.0, end), ticks: Vec::new() },
+            x: Axis {
+                label: "by axis, in the order of the table".into(),
+                log: false,
+                range: (-0.5, end - 0.5),
+                ticks: (0..means.len()).map(|index| index as f64).collect(),
+            },
             y: Axis::of_values("new time / old time", false, means.iter().map(|mean| mean.ratio).chain([1.0])),
             series: Vec::new(),
             groups: means.iter().map(name).collect(),

@@ -70,8 +70,7 @@ pub fn compare(names: &mut Names, runs: Vec<ComparedRun>, sides: Vec<Side>, opti
             pairs += 1;
             like += usize::from(outcome.unlike.iter().all(|unlike| options.across.contains(&unlike.condition)));
             let is_same_content = outcome.unlike.iter().all(|unlike| {
-                GENERAL.contains(&unlike.condition.as_str())
-                    || options.across.contains(&unlike.condition)
+                GENERAL.contains(&unlike.condition.as_str()) || options.across.contains(&unlike.condition)
             });
             let is_one_driver = !outcome.unlike.iter().any(|unlike| ["device", "driver"].contains(&&*unlike.condition));
             if is_same_content && old.status == Status::Ok && new.status == Status::Ok {
@@ -312,9 +311,17 @@ fn means(names: &Names, rows: &[PairedRow], labels: &Labels) -> Vec<Mean> {
 /// What a reader should know.
 fn notes(comparison: &Comparison, unlike: &BTreeMap<Difference, usize>, options: &Options) -> Vec<String> {
     let mut notes = Vec::new();
+    // By condition: the first difference, and how many rows and other values there are
+    let mut conditions: BTreeMap<&str, (String, usize, usize)> = BTreeMap::new();
     for (difference, rows) in unlike {
-        let how = if options.across.contains(&difference.condition) { "compared across" } else { "not compared" };
-        notes.push(format!("{} ({rows} rows): {how}", difference.describe()));
+        let known = conditions.entry(&difference.condition).or_insert_with(|| (difference.describe(), 0, 0));
+        (known.1, known.2) = (known.1 + rows, known.2 + 1);
+    }
+    for (condition, (first, rows, values)) in conditions {
+        let how =
+            if options.across.iter().any(|across| across == condition) { "compared across" } else { "not compared" };
+        let more = if values > 1 { format!(" and {} more", values - 1) } else { String::new() };
+        notes.push(format!("{first}{more} ({rows} rows): {how}"));
     }
     let builds: Vec<&str> =
         comparison.runs.iter().filter_map(|run| run.run.provenance.program.executable_hash.as_deref()).collect();
