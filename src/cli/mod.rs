@@ -4,14 +4,20 @@
 //! check's answer is no (a kernel was wrong, a structure is not valid, a document is not up to date), 2 something could
 //! not run, 130 Ctrl-C.
 
+mod ab;
+mod baselines;
+mod bless;
 mod build;
 mod camera_path;
 mod claims;
+mod compare;
 mod completions;
 mod device;
 mod devices;
 mod env;
 mod figures;
+mod flags;
+mod gate;
 mod interrupt;
 mod kernels;
 mod library;
@@ -60,6 +66,10 @@ enum Command {
     Figures(figures::Arguments),
     Report(report::Arguments),
     Merge(merge::Arguments),
+    Compare(compare::Arguments),
+    Ab(ab::Arguments),
+    Gate(gate::Arguments),
+    Bless(bless::Arguments),
     Render(render::Arguments),
     Build(build::Arguments),
     Trace(trace::Arguments),
@@ -117,6 +127,10 @@ fn run(command: Command) -> Result<ExitCode> {
         Command::Figures(arguments) => figures::run(&arguments).map(done),
         Command::Report(arguments) => report::run(&arguments).map(done),
         Command::Merge(arguments) => merge::run(&arguments),
+        Command::Compare(arguments) => compare::run(&arguments).map(done),
+        Command::Ab(arguments) => ab::run(&arguments).map(done),
+        Command::Gate(arguments) => gate::run(&arguments),
+        Command::Bless(arguments) => bless::run(&arguments).map(done),
         Command::Render(arguments) => render::run(&arguments).map(done),
         Command::Build(arguments) => build::run(&arguments),
         Command::Trace(arguments) => trace::run(&arguments).map(done),

@@ -18,13 +18,14 @@ use crate::record::terminal::counted;
 use crate::record::{files, journal};
 use crate::workloads;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 
 /// Flags that all workloads have.
 #[derive(Args, Clone, Debug)]
-struct CommonArguments {
+pub(super) struct CommonArguments {
     /// What the other flags begin with: the name of a preset, or a TOML file like those in presets/
     #[arg(long, value_name = "NAME|FILE", value_parser = file_name())]
     preset: Option<String>,
@@ -55,7 +56,7 @@ struct CommonArguments {
     #[arg(long, short)]
     quiet: bool,
     #[command(flatten)]
-    device: DeviceArguments,
+    pub(super) device: DeviceArguments,
 }
 
 /// Flags that a resumed run may have besides `--resume`; all others belong to the beginning of a run.
@@ -65,11 +66,13 @@ const ALSO_RESUMED: [&str; 3] = ["resume", "strict", "quiet"];
 const PLANNED: [&str; 7] = ["shard", "preset", "scenes_dir", "scene_time", "frames", "passes", "warmup"];
 
 /// What was given on a command line.
-struct Given {
-    workload: &'static dyn Workload,
+pub(super) struct Given {
+    pub(super) workload: &'static dyn Workload,
     /// Values by axis.
-    values: std::collections::BTreeMap<String, Vec<String>>,
-    common: CommonArguments,
+    pub(super) values: BTreeMap<String, Vec<String>>,
+    pub(super) common: CommonArguments,
+    /// The command line, for the record.
+    pub(super) arguments: Vec<String>,
 }
 
 /// The subcommands of all workloads.
@@ -157,7 +160,7 @@ pub fn run(matches: &ArgMatches) -> Option<Result<ExitCode>> {
 }
 
 impl Given {
-    fn read(workload: &'static dyn Workload, matches: &ArgMatches) -> Result<Given> {
+    pub(super) fn read(workload: &'static dyn Workload, matches: &ArgMatches) -> Result<Given> {
         let common = CommonArguments::from_arg_matches(matches)
             .map_err(|error| Error::argument(workload.info().name, error.to_string(), "see --help"))?;
         let axes = workload.info().axes.iter().filter(|axis| axis.is_flag);
@@ -165,7 +168,8 @@ impl Given {
             let given = matches.get_many::<String>(axis.name)?;
             Some((axis.name.to_owned(), given.cloned().collect()))
         });
-        Ok(Given { values: values.collect(), workload, common })
+        let arguments = std::env::args_os().map(|argument| names::text(&argument)).collect();
+        Ok(Given { values: values.collect(), workload, common, arguments })
     }
 
     /// The command line that a recorded run began with; `None` if this program does not know it.
@@ -175,7 +179,7 @@ impl Given {
         Given::read(workloads::find(name)?, matches).ok()
     }
 
-    fn run(self) -> Result<ExitCode> {
+    pub(super) fn run(self) -> Result<ExitCode> {
         let Some(run) = &self.common.resume else { return self.measure(PreviousRun::default()) };
         let folder = journal::folder_of(run);
         let previous = PreviousRun::read(&folder)?;
@@ -217,7 +221,11 @@ impl Given {
         }
     }
 
-    fn plan(&self) -> Result<Plan> {
+    /// The plan of these flags.
+    ///
+    /// # Errors
+    /// Those of [`Plan::new`].
+    pub(super) fn plan(&self) -> Result<Plan> {
         let common = &self.common;
         let subject = self.workload.info().axes.first().map_or("", |axis| axis.name);
         for value in self.values.get(subject).into_iter().flatten() {
@@ -290,7 +298,7 @@ impl Given {
             plan: &plan,
             out: &out,
             previous,
-            arguments: std::env::args_os().map(|a| names::text(&a)).collect(),
+            arguments: self.arguments.clone(),
             devices: vec![device],
             open: &|_| common.device.open(),
             interrupted: &interrupted,

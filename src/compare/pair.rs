@@ -4,6 +4,9 @@
 //! its group: those that were measured with most structures; of equals those with most variants, then the later ones.
 //! The other rows of the group are left out, so that no table and no judgement sets one against the other.
 
+use std::collections::HashMap;
+use std::hash::Hash;
+
 /// What the frames of a measurement show. The default means unknown conditions, as of published values.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Conditions {
@@ -58,24 +61,25 @@ pub struct Comparable<'a, G, V> {
 }
 
 /// For each row, in the order of measurement: nothing if its conditions are its group's, otherwise the group's.
-pub fn choose<'a, G: PartialEq, V: Ord + Copy>(rows: &[Comparable<'a, G, V>]) -> Vec<Option<&'a Conditions>> {
-    let mut groups: Vec<Vec<&Comparable<'a, G, V>>> = Vec::new();
+pub fn choose<'a, G: Eq + Hash, V: Ord + Copy>(rows: &[Comparable<'a, G, V>]) -> Vec<Option<&'a Conditions>> {
+    let mut groups: HashMap<&G, Vec<&Comparable<'a, G, V>>> = HashMap::new();
     for row in rows {
-        match groups.iter_mut().find(|group| group[0].group == row.group) {
-            Some(group) => group.push(row),
-            None => groups.push(vec![row]),
-        }
+        groups.entry(&row.group).or_default().push(row);
     }
-    let chosen: Vec<(&G, &'a Conditions)> = groups.iter().map(|group| (&group[0].group, best(group))).collect();
+    let chosen: HashMap<&G, &'a Conditions> = groups.iter().map(|(group, rows)| (*group, best(rows))).collect();
     let of_group = |row: &Comparable<'a, G, V>| {
-        let (_, conditions) = chosen.iter().find(|(group, _)| **group == row.group)?;
-        (*conditions != row.conditions).then_some(*conditions)
+        let conditions = *chosen.get(&row.group)?;
+        (conditions != row.conditions).then_some(conditions)
     };
     rows.iter().map(of_group).collect()
 }
 
 /// The conditions that hold for a group, which has at least one row.
 fn best<'a, G, V: Ord + Copy>(group: &[&Comparable<'a, G, V>]) -> &'a Conditions {
+    // The usual case, in which nothing has to be counted
+    if group.iter().all(|row| row.conditions == group[0].conditions) {
+        return group[0].conditions;
+    }
     let rank = |(index, row): (usize, &&Comparable<'a, G, V>)| {
         let same = || group.iter().filter(|other| other.conditions == row.conditions);
         let mut structures: Vec<&str> = same().map(|other| other.structure).collect();

@@ -2,6 +2,7 @@
 //! the journal, and resuming. What is measured leaves as [`crate::record`] rows and nothing else. Outside of it only
 //! devices and builders read a clock.
 
+pub mod ab;
 pub mod environment;
 mod failure;
 pub mod measure;

@@ -62,6 +62,11 @@ pub trait Workload: Sync {
         Ok(Vec::new())
     }
 
+    /// Names of whole numbers among the metrics that depend on the machine, and are not compared as exact quantities.
+    fn machine_metrics(&self) -> &'static [&'static str] {
+        &[]
+    }
+
     /// Text about a run's artifacts, above the table of its rows.
     fn artifacts_table(&self, _journal: &Journal) -> String {
         String::new()

@@ -11,4 +11,5 @@ pub mod row;
 pub mod run;
 pub mod schema;
 pub mod statistics;
+pub mod stream;
 pub mod terminal;

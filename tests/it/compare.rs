@@ -2,4 +2,6 @@
 
 mod judge; // margins, noise, verdicts of cases
 mod pair; // rows of unlike conditions
-mod statistics; // paired ratios, the sign test's interval
+mod rounds; // interleaved rounds and their null band
+mod runs; // whole runs: conditions, verdicts, formats, memory
+mod statistics; // paired ratios, the sign test's interval, ranks

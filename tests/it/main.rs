@@ -3,6 +3,7 @@
 mod accel; // builders x degenerate inputs, validation, memory model, determinism
 mod architecture; // who may use whom, and which files may use wgpu, clocks and output
 mod camera; // camera paths: files, thinning, fitting, errors
+mod changes; // compare, gate, bless and ab as a user runs them
 mod cli; // the program as a user runs it: outputs, exit codes, broken input
 mod compare; // pairs, judgements and statistics against known answers
 mod device; // frames of several passes, indirect dispatch, textures, features
@@ -13,6 +14,7 @@ mod fakes; // records with known content, a device that breaks on demand
 mod files; // names of files of all kinds, and what must not be written over
 mod identities; // hashes of kernels and readers do not depend on comments
 mod kernel_costs; // the static cost of kernels by hand, and that none is left out
+mod journals; // journals of any number of rows
 mod kernels; // every kernel variant through naga, struct layouts, no GPU
 mod language; // comments and documents are at most 120 columns wide
 mod many; // shards, merged runs, runs that are killed and resumed

@@ -62,7 +62,7 @@ impl Data {
         variant: &Variant,
     ) -> impl DoubleEndedIterator<Item = &Built> {
         let scene = scene.built();
-        self.built.iter().filter(move |b| b.structure == structure && b.scene == *scene && b.variant == *variant)
+        self.built.of(scene, structure, variant).filter(move |b| b.structure == structure && b.scene == *scene)
     }
 
     /// A built structure, by any builder.

@@ -4,6 +4,7 @@ use super::data::{Data, Frame};
 use super::scenes::SceneKey;
 use crate::compare::pair::{Comparable, choose};
 use crate::workloads::trace::backend::Config;
+use std::collections::HashMap;
 
 /// The frames that fill the rows, and a note on the others.
 pub fn choose_frames<T>(rows: Vec<(Frame, T)>, device: impl Fn(usize) -> String) -> (Vec<(Frame, T)>, Vec<String>) {
@@ -48,15 +49,18 @@ struct Difference {
 /// Notes on devices that measured the same scene, configuration and size under unlike conditions: their times do not
 /// compare.
 pub fn unlike_devices(data: &Data) -> Vec<String> {
+    if data.devices.len() < 2 {
+        return Vec::new();
+    }
+    let place = |f: &Frame| (f.scene.clone(), f.structure.clone(), f.config, f.width, f.height);
+    let mut places: HashMap<_, Vec<&Frame>> = HashMap::new();
+    for frame in data.frames.iter() {
+        places.entry(place(frame)).or_default().push(frame);
+    }
     let mut found: Vec<Difference> = Vec::new();
-    for frame in &data.frames {
-        let same = |f: &&Frame| {
-            f.device < frame.device
-                && f.scene == frame.scene
-                && f.structure == frame.structure
-                && (f.config, f.width, f.height) == (frame.config, frame.width, frame.height)
-        };
-        for other in data.frames.iter().filter(same).filter(|f| f.conditions != frame.conditions) {
+    for frame in data.frames.iter() {
+        let others = places.get(&place(frame)).into_iter().flatten().filter(|f| f.device < frame.device);
+        for other in others.filter(|f| f.conditions != frame.conditions) {
             let here = frame.conditions.difference_from(&other.conditions);
             let there = other.conditions.difference_from(&frame.conditions);
             let (devices, words) = ((other.device, frame.device), format!("{}: {there} / {here}", frame.scene));

@@ -3,6 +3,7 @@
 
 #![allow(missing_docs)] // The names of most fields say what they are
 
+use super::indexed::Indexed;
 use super::scenes::{SceneKey, ThesisScene};
 use super::variant::Variant;
 use crate::compare::pair::Conditions;
@@ -22,11 +23,11 @@ pub struct Data {
     /// The thesis's scenes in its order, then the others by name.
     pub scenes: Vec<Scene>,
     /// Frame times, one per configuration.
-    pub frames: Vec<Frame>,
+    pub frames: Indexed<Frame>,
     /// Counts per ray.
-    pub counts: Vec<Counts>,
+    pub counts: Indexed<Counts>,
     /// Built structures, each once by every processor and number of threads.
-    pub built: Vec<Built>,
+    pub built: Indexed<Built>,
     /// Measurements without a usable result.
     pub failures: Vec<Failure>,
     /// Rows of tables 5.7 and 5.8: only the thesis could limit registers.
@@ -194,7 +195,7 @@ impl Data {
         config: Config,
         side: u32,
     ) -> Option<&Frame> {
-        self.frames.iter().find(|f| {
+        self.frames.of(scene, structure, variant).find(|f| {
             (f.device, f.config, f.width, f.height) == (device, config, side, side)
                 && f.structure == structure
                 && f.scene == *scene
@@ -223,12 +224,12 @@ impl Data {
     /// of the first.
     pub fn counts_of(&self, scene: &SceneKey, structure: &str, variant: &Variant, ray: usize) -> Option<&Counts> {
         let wanted = |c: &&Counts| c.config == config_adding(ray) && c.is(scene, structure, variant, ray);
-        self.counts.iter().filter(wanted).max_by_key(|c| (c.resolution, Reverse(c.device)))
+        self.counts.of(scene, structure, variant).filter(wanted).max_by_key(|c| (c.resolution, Reverse(c.device)))
     }
 
     /// Counts of the same measurement as `other`, but with these options.
     pub fn counts_with(&self, other: &Counts, variant: &Variant) -> Option<&Counts> {
-        self.counts.iter().find(|c| {
+        self.counts.of(&other.scene, &other.structure, variant).find(|c| {
             (c.device, c.config, c.resolution) == (other.device, other.config, other.resolution)
                 && c.is(&other.scene, &other.structure, variant, other.ray)
         })
@@ -236,7 +237,7 @@ impl Data {
 
     /// Counts of a ray type that belong to a frame time.
     pub fn counts_of_frame(&self, frame: &Frame, ray: usize) -> Option<&Counts> {
-        self.counts.iter().find(|c| {
+        self.counts.of(&frame.scene, &frame.structure, &frame.variant).find(|c| {
             (c.device, c.config, c.resolution) == (frame.device, frame.config, frame.width)
                 && frame.width == frame.height
                 && c.is(&frame.scene, &frame.structure, &frame.variant, ray)

@@ -12,6 +12,7 @@ use crate::record::run::{Environment, Provenance};
 use crate::sources::convention::Steps;
 use crate::sources::runs::RecordedRun;
 use crate::workloads::trace::record::{ConfigurationRecord, CounterSums, SceneRecord, StructureRecord};
+use std::collections::HashMap;
 
 /// True if a run has rows that the thesis's tables can show.
 pub fn has_rows(run: &RecordedRun) -> bool {
@@ -23,6 +24,7 @@ pub fn has_rows(run: &RecordedRun) -> bool {
 pub fn data(runs: &[RecordedRun]) -> Data {
     let mut data = Data::default();
     let mut identities: Vec<Vec<String>> = Vec::new();
+    let mut scenes: HashMap<SceneKey, usize> = HashMap::new();
     let (mut built, mut frames) = (Vec::new(), Vec::new());
     for run in runs {
         let provenance = &run.journal.provenance;
@@ -37,12 +39,12 @@ pub fn data(runs: &[RecordedRun]) -> Data {
         let devices: Vec<(usize, &DeviceInfo)> =
             provenance.devices.iter().map(|device| (index_of(&device.info), &device.info)).collect();
         for record in &run.journal.structures {
-            add_scene(&mut data, scene_key(&record.scene), &record.scene);
+            add_scene(&mut data, &mut scenes, scene_key(&record.scene), &record.scene);
             built.push(built_of(record, provenance));
         }
         for record in &run.journal.configurations {
             let key = row_key(record);
-            add_scene(&mut data, key.clone(), &record.scene);
+            add_scene(&mut data, &mut scenes, key.clone(), &record.scene);
             let Some(&(device, info)) = devices.get(record.device) else { continue };
             match frame_of(device, &key, info, record) {
                 Some(frame) => frames.push((frame, record)),
@@ -147,7 +149,8 @@ fn row_key(record: &ConfigurationRecord) -> SceneKey {
     scene_key(scene).along(&scene.name, scene.triangles, path, record.config.shadows())
 }
 
-fn add_scene(data: &mut Data, key: SceneKey, record: &SceneRecord) {
+/// Adds a scene; of equal ones the last counts. `known` has the index of each.
+fn add_scene(data: &mut Data, known: &mut HashMap<SceneKey, usize>, key: SceneKey, record: &SceneRecord) {
     let scene = Scene {
         triangles: record.triangles,
         vertices: record.vertices,
@@ -155,9 +158,12 @@ fn add_scene(data: &mut Data, key: SceneKey, record: &SceneRecord) {
         mirror_share: Some(record.mirror_share),
         key,
     };
-    match data.scenes.iter_mut().find(|known| known.key == scene.key) {
-        Some(known) => *known = scene,
-        None => data.scenes.push(scene),
+    match known.get(&scene.key) {
+        Some(&index) => data.scenes[index] = scene,
+        None => {
+            known.insert(scene.key.clone(), data.scenes.len());
+            data.scenes.push(scene);
+        }
     }
 }
 
@@ -191,6 +197,8 @@ fn add_built(data: &mut Data, rows: Vec<(Built, Conditions)>) {
     });
     let comparable: Vec<_> = comparable.collect();
     let keep: Vec<bool> = choose(&comparable).iter().map(Option::is_none).collect();
+    let mut last: HashMap<_, usize> = HashMap::new();
+    let mut kept: Vec<Option<Built>> = Vec::new();
     for ((mut built, _), keep) in rows.into_iter().zip(keep) {
         if !keep {
             let note = format!("structures of another content of {} were left out", built.scene);
@@ -199,18 +207,15 @@ fn add_built(data: &mut Data, rows: Vec<(Built, Conditions)>) {
             }
             continue;
         }
-        let same = |b: &Built| {
-            b.scene == built.scene
-                && b.structure == built.structure
-                && b.variant == built.variant
-                && b.by() == built.by()
-        };
-        if let Some(known) = data.built.iter().position(same) {
-            data.built.remove(known);
+        let by = (built.processor.clone(), built.threads);
+        let place = (built.scene.clone(), built.structure.clone(), built.variant.clone(), by);
+        if let Some(known) = last.insert(place, kept.len()) {
+            kept[known] = None;
             built.repeated = true;
         }
-        data.built.push(built);
+        kept.push(Some(built));
     }
+    data.built = kept.into_iter().flatten().collect();
 }
 
 /// A measurement's times, if it has usable ones.
@@ -270,19 +275,10 @@ fn failure_of(device: usize, scene: SceneKey, record: &ConfigurationRecord) -> F
 }
 
 fn add_frame(data: &mut Data, mut frame: Frame) {
-    let same = |f: &&mut Frame| {
-        (f.device, f.config, f.width, f.height) == (frame.device, frame.config, frame.width, frame.height)
-            && f.scene == frame.scene
-            && f.structure == frame.structure
-            && f.variant == frame.variant
-    };
-    match data.frames.iter_mut().find(same) {
-        Some(known) => {
-            frame.repeated = true;
-            *known = frame;
-        }
-        None => data.frames.push(frame),
-    }
+    let case = (frame.device, frame.config, frame.width, frame.height);
+    let same = |f: &Frame| (f.device, f.config, f.width, f.height) == case;
+    frame.repeated = data.frames.of(&frame.scene, &frame.structure, &frame.variant).any(same);
+    data.frames.put(frame, same);
 }
 
 /// Counts of every ray type that a measurement traced; of the same measurement the last counts.
@@ -290,14 +286,8 @@ fn add_counts(data: &mut Data, frame: &Frame, record: &ConfigurationRecord) {
     let Some(counters) = record.counters.as_ref().filter(|_| frame.width == frame.height) else { return };
     for (ray, sums) in counters.iter().enumerate().filter(|(_, sums)| sums.rays > 0) {
         let counts = counts_of(frame, ray, sums);
-        let same = |c: &&mut Counts| {
-            (c.device, c.config, c.ray, c.resolution) == (frame.device, frame.config, ray, frame.width)
-                && (&c.scene, &c.structure, &c.variant) == (&counts.scene, &counts.structure, &counts.variant)
-        };
-        match data.counts.iter_mut().find(same) {
-            Some(known) => *known = counts,
-            None => data.counts.push(counts),
-        }
+        let case = (frame.device, frame.config, ray, frame.width);
+        data.counts.put(counts, |c| (c.device, c.config, c.ray, c.resolution) == case);
     }
 }
 

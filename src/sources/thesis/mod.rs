@@ -6,6 +6,7 @@ pub mod claims;
 mod conditions;
 pub mod data;
 pub mod figures;
+mod indexed;
 pub mod measured;
 pub mod published;
 mod report;

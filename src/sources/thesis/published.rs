@@ -144,8 +144,8 @@ pub fn data() -> Data {
         published: true,
         scenes: scenes(),
         frames: frames.collect(),
-        counts: counts(),
-        built: built(),
+        counts: counts().into_iter().collect(),
+        built: built().into_iter().collect(),
         register_limit: limits.collect(),
         devices,
         ..Data::default()

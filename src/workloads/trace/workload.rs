@@ -208,6 +208,10 @@ impl Workload for Trace {
         kernels::defaults()
     }
 
+    fn machine_metrics(&self) -> &'static [&'static str] {
+        &["build_threads", "dispatches"]
+    }
+
     fn derived(&self, row: &Row, frames: Option<&FrameStatistics>) -> Vec<Metric> {
         let variant = variant_of(&row.key);
         let structure = row.key.axis("structure");

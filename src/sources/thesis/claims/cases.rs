@@ -245,7 +245,7 @@ pub fn changed<'a>(
     (key, value): (&str, &str),
 ) -> Vec<(&'a Frame, &'a Frame)> {
     let mut pairs: Vec<(&Frame, &Frame)> = Vec::new();
-    for frame in &data.frames {
+    for frame in data.frames.iter() {
         let square = frame.width == frame.height;
         let base = Variant::of_thesis(frame.scene.thesis(), structure);
         if (frame.device, frame.config, frame.structure.as_str(), square) != (device, config, structure, true)

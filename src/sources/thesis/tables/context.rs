@@ -6,6 +6,7 @@ use crate::sources::thesis::data::Data;
 use crate::sources::thesis::scenes::{SceneKey, ThesisScene};
 use crate::sources::{Options, Rows};
 use crate::workloads::trace::backend::Config;
+use std::collections::HashSet;
 
 /// The number of failed measurements that a note spells out.
 const MAX_SPELT_OUT: usize = 4;
@@ -81,9 +82,9 @@ impl Context<'_> {
     fn absences(&self, rows: &[(SceneKey, Row)]) -> Vec<String> {
         let mut absent: Vec<&SceneKey> = Vec::new();
         let (mut gaps, mut tessellations, mut others) = (false, Vec::new(), false);
+        let filled: HashSet<&SceneKey> = rows.iter().filter(|(_, row)| row.is_filled()).map(|(key, _)| key).collect();
         for (key, row) in rows {
-            let of_scene = || rows.iter().filter(|(other, _)| other == key);
-            if of_scene().all(|(_, row)| !row.is_filled()) {
+            if !filled.contains(key) {
                 if !absent.contains(&key) {
                     absent.push(key);
                 }

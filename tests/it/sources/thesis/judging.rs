@@ -6,6 +6,7 @@ use rtbench::compare::judge::Verdict;
 use rtbench::record::row::Status;
 use rtbench::sources::claims::{Finding, Form, write};
 use rtbench::sources::thesis::claims::judge;
+use rtbench::sources::thesis::data::Frame;
 use rtbench::sources::thesis::{measured, published};
 use rtbench::workloads::trace::backend::{Config, DeviceType};
 
@@ -66,9 +67,7 @@ fn the_printed_numbers_are_judged_by_the_same_rule() {
     // A run that had measured the same numbers gets the same verdicts.
     let mut run = data.clone();
     run.published = false;
-    for frame in &mut run.frames {
-        frame.noise_pct = Some(0.0);
-    }
+    run.frames = run.frames.iter().map(|frame| Frame { noise_pct: Some(0.0), ..frame.clone() }).collect();
     let measured = judge(&run, &data, 0);
     for (a, b) in all.iter().zip(&measured).filter(|(a, _)| a.claim != "12") {
         assert_eq!((a.claim, a.verdict, a.agreeing, &a.exceptions), (b.claim, b.verdict, b.agreeing, &b.exceptions));

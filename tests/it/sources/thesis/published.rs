@@ -29,7 +29,7 @@ fn every_row_is_there() {
     // 5.12 to 5.14 are all there, but for the kd-tree in the conference room with reflections.
     let full = |config| data.frames.iter().filter(|f| (f.device, f.width, f.config) == (0, 1024, config)).count();
     assert_eq!([Config::P, Config::PS, Config::PSR].map(full), [27, 27, 17]);
-    for frame in &data.frames {
+    for frame in data.frames.iter() {
         assert!(0.0 < frame.min_ms && frame.min_ms <= frame.mean_ms && frame.mean_ms <= frame.max_ms, "{frame:?}");
     }
 }
@@ -66,8 +66,10 @@ fn the_memory_model_gives_all_27_published_sizes() {
         assert!(found <= stated, "{largest:?}");
     }
     // A wrong size is noticed.
-    let row = data.built.iter_mut().find(|b| b.structure == "kdtree").unwrap();
+    let mut wrong: Vec<_> = data.built.iter().cloned().collect();
+    let row = wrong.iter_mut().find(|b| b.structure == "kdtree").unwrap();
     row.thesis_mib = row.thesis_mib.map(|mib| mib + 0.2);
+    data.built = wrong.into_iter().collect();
     assert!(std::panic::catch_unwind(|| largest_difference(&data, "kdtree")).is_err());
 }
 

@@ -6,10 +6,17 @@
 //! over frames of MAD / frame time**, MAD being the median absolute deviation of a frame's passes from its median,
 //! unscaled. It is in percent, and unknown after a single pass. Nothing is ever discarded.
 //!
-//! Two contestants are compared by *paired ratios*: each round measures both, in an order that alternates
-//! ([`interleaved_order`]), and gives one ratio, so that a machine that changes its clock between rounds disturbs both
-//! sides of a ratio alike. The result is the **median of the ratios** with the **interval of an exact sign test**,
-//! which assumes nothing about the distribution of the ratios.
+//! Two contestants are compared by *paired ratios* where each round measured both ([`paired_ratio`]), and by ranks
+//! where they were measured apart ([`unpaired_ratio`]).
+
+mod paired;
+mod unpaired;
+
+pub use paired::{
+    Estimate, geometric_mean, interleaved_order, paired_ratio, paired_ratio_at, sign_test_interval, sign_test_p,
+    sign_test_rank, sign_test_rank_at,
+};
+pub use unpaired::{Unpaired, mann_whitney, unpaired_ratio};
 
 /// The median; the mean of the middle two where their number is even. `None` of nothing.
 pub fn median(values: &[f64]) -> Option<f64> {
@@ -39,56 +46,6 @@ pub fn percentile(values: &[f64], percent: f64) -> Option<f64> {
     let sorted = sorted(values);
     let rank = (percent / 100.0 * sorted.len() as f64).ceil() as usize;
     sorted.get(rank.clamp(1, sorted.len().max(1)) - 1).copied()
-}
-
-/// The order in which a round measures its contestants: from the first to the last, and in every other round back
-/// (ABBA).
-pub fn interleaved_order(contestants: usize, round: usize) -> Vec<usize> {
-    let forward = 0..contestants;
-    if round.is_multiple_of(2) { forward.collect() } else { forward.rev().collect() }
-}
-
-/// An estimate with the interval that holds the true value with a probability of at least 95 %, if there are enough
-/// values for such an interval.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
-    /// The estimate.
-    pub value: f64,
-    /// The lower end of the interval.
-    pub low: f64,
-    /// The upper end of the interval.
-    pub high: f64,
-}
-
-/// The median of the rounds' ratios with its interval. `None` without a round; of lists of unlike length, the rounds
-/// that both have count.
-pub fn paired_ratio(above: &[f64], below: &[f64]) -> Option<Estimate> {
-    let ratios: Vec<f64> = above.iter().zip(below).map(|(above, below)| above / below).collect();
-    let (low, high) = sign_test_interval(&ratios)?;
-    Some(Estimate { value: median(&ratios)?, low, high })
-}
-
-/// The values between which the median of their distribution lies with a probability of at least 95 %, by an exact sign
-/// test; with five values or fewer there is no such interval, and all values are between the two. `None` of nothing.
-pub fn sign_test_interval(values: &[f64]) -> Option<(f64, f64)> {
-    let sorted = sorted(values);
-    let outside = sign_test_rank(sorted.len()).saturating_sub(1);
-    Some((*sorted.get(outside)?, sorted[sorted.len() - 1 - outside]))
-}
-
-/// The rank, from 1, of the interval's lower end among `n` values: the largest `k` for which the probability that fewer
-/// than
-/// `k` of them are below the median is at most 2.5 %. 0 if there is none.
-pub fn sign_test_rank(n: usize) -> usize {
-    // Binomial probabilities as logarithms: half to the power of a large number is no float above zero
-    let mut log_term = -(n as f64) * std::f64::consts::LN_2;
-    let (mut rank, mut tail) = (0, log_term.exp());
-    while tail <= 0.025 && rank < n {
-        rank += 1;
-        log_term += ((n - rank + 1) as f64 / rank as f64).ln();
-        tail += log_term.exp();
-    }
-    rank
 }
 
 /// What a table says about the frames of one configuration. Times in milliseconds.
