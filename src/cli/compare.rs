@@ -4,6 +4,7 @@ use super::runs::write_or_print;
 use crate::compare::conditions::{ComparedRun, check_across};
 use crate::compare::runs::{self, MARGIN_PCT, Options, Shown, Side};
 use crate::error::{Error, Result};
+use crate::guard;
 use crate::record::files;
 use crate::record::stream::{LeanRun, Names};
 use crate::report::format::{self, Format};
@@ -93,10 +94,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         sides.push(Side { name: side_name(text), runs: of_side });
     }
     distinguish(&mut sides);
-    let inputs: Vec<PathBuf> =
-        compared.iter().map(|run| run.run.folder.join(crate::record::journal::FILE_NAME)).collect();
     for out in arguments.output.iter().chain(&arguments.html) {
-        files::refuse_overwrite(out, inputs.iter().map(PathBuf::as_path))?;
+        guard::check_output(out)?;
     }
     check_across(&arguments.across, &names, &compared)?;
     let options = options(arguments, &compared);

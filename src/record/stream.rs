@@ -8,6 +8,7 @@ use super::journal::{FILE_NAME, folder_of};
 use super::row::{SCHEMA, Settings, Status};
 use super::run::{End, Provenance};
 use crate::error::{Error, Result};
+use crate::guard;
 use foldhash::fast::RandomState;
 use line::{ArtifactLine, InputLine, Line, RowLine};
 use std::collections::HashMap;
@@ -135,6 +136,7 @@ impl LeanRun {
         if !journal.is_file() {
             return Err(Error::file(path, None, format!("no run: there is no {FILE_NAME} in it"), hint));
         }
+        guard::read(&journal);
         let file = File::open(&journal).map_err(|e| Error::file(&journal, None, format!("cannot read: {e}"), hint))?;
         if let Err(TryLockError::WouldBlock) = file.try_lock_shared() {
             let problem = "another process is writing this run";

@@ -47,6 +47,7 @@ fn provenance(rows: usize) -> Provenance {
         threads: None,
     };
     Provenance {
+        merged: Vec::new(),
         schema: SCHEMA.into(),
         id: "0123456789abcdef".into(),
         workload: "sweep".into(),

@@ -13,8 +13,8 @@ mod exact; // the ray/triangle test against exact arithmetic
 mod fakes; // records with known content, a device that breaks on demand
 mod files; // names of files of all kinds, and what must not be written over
 mod identities; // hashes of kernels and readers do not depend on comments
-mod kernel_costs; // the static cost of kernels by hand, and that none is left out
 mod journals; // journals of any number of rows
+mod kernel_costs; // the static cost of kernels by hand, and that none is left out
 mod kernels; // every kernel variant through naga, struct layouts, no GPU
 mod language; // comments and documents are at most 120 columns wide
 mod many; // shards, merged runs, runs that are killed and resumed
