@@ -56,7 +56,7 @@ impl Preset {
         let text = text.trim_start_matches('\u{feff}');
         let file = File {
             info,
-            path: &*names::file(name),
+            path: &names::file(name),
             text,
             example: format!("see presets/{}/{}.toml", info.name, info.presets.first().map_or("", |(name, _)| name)),
         };

@@ -28,7 +28,7 @@ impl InventorReader {
             let place = node.vector(name, default)?;
             let finite = colour.is_finite() && place.is_finite();
             let problem = || Fault::new(None, "a number of the light is not finite", "");
-            Ok(node.flag("on", true)?.then_some(finite.then_some((place, colour)).ok_or_else(problem)).transpose()?)
+            node.flag("on", true)?.then_some(finite.then_some((place, colour)).ok_or_else(problem)).transpose()
         };
         let (place, colour) = match read() {
             Ok(Some(found)) => found,
