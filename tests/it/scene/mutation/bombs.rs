@@ -181,13 +181,15 @@ fn gltf() {
     load("main.glb", &glb(&morph, &bytes), "MiB of memory");
     // Long accessors of which nothing is used
     let mut unused = document.clone();
-    unused["accessors"][1] = json!({ "componentType": 5123, "count": 3, "type": "SCALAR" });
+    let indices = json!({ "componentType": 5123, "count": 3, "type": "SCALAR" });
+    unused["accessors"].as_array_mut().unwrap().push(indices);
     unused["meshes"][0]["primitives"][0]["indices"] = json!(1);
     unused["nodes"] = vec![json!({ "mesh": 0 }); 100_000].into();
     load("main.glb", &glb(&unused, &bytes), "MiB of memory");
     // Instances without bytes
     let mut instances = document.clone();
-    instances["accessors"][1] = json!({ "componentType": 5126, "count": 65536, "type": "VEC3" });
+    let places = json!({ "componentType": 5126, "count": 65536, "type": "VEC3" });
+    instances["accessors"].as_array_mut().unwrap().push(places);
     let attributes = json!({ "attributes": { "TRANSLATION": 1 } });
     instances["nodes"][0]["extensions"] = json!({ "EXT_mesh_gpu_instancing": attributes });
     load("main.glb", &glb(&instances, &bytes), "memory=SIZE");
