@@ -6,7 +6,7 @@ use super::scenes::SceneKey;
 use super::variant::Variant;
 use foldhash::fast::FixedState;
 use std::collections::HashMap;
-use std::hash::{BuildHasher, Hash, Hasher};
+use std::hash::BuildHasher;
 use std::ops::Deref;
 
 /// Something that belongs to a scene, a structure and its options.
@@ -56,9 +56,7 @@ impl<T> Deref for Indexed<T> {
 }
 
 fn hash(place: (&SceneKey, &str, &Variant)) -> u64 {
-    let mut hasher = FixedState::default().build_hasher();
-    place.hash(&mut hasher);
-    hasher.finish()
+    FixedState::default().hash_one(place)
 }
 
 impl<T: Place> Indexed<T> {
