@@ -58,9 +58,9 @@ pub fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Fault> {
 /// The characters of the JSON. Bytes that are not UTF-8 are replaced: they are in names, or they are found later.
 ///
 /// # Errors
-/// The JSON is UTF-16.
+/// The JSON is UTF-16, with a byte order mark or without.
 pub fn characters(json: &[u8]) -> Result<Cow<'_, str>, Fault> {
-    if json.starts_with(b"\xff\xfe") || json.starts_with(b"\xfe\xff") {
+    if matches!(json, [0xff, 0xfe, ..] | [0xfe, 0xff, ..] | [0, 1.., ..] | [1.., 0, ..]) {
         return Err(Fault::new(None, "the JSON is encoded as UTF-16", "save the file as UTF-8"));
     }
     // Some exporters fill the chunk with zeros instead of spaces.
