@@ -60,7 +60,7 @@ pub fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Fault> {
 /// # Errors
 /// The JSON is UTF-16, with a byte order mark or without.
 pub fn characters(json: &[u8]) -> Result<Cow<'_, str>, Fault> {
-    if matches!(json, [0xff, 0xfe, ..] | [0xfe, 0xff, ..] | [0, 1.., ..] | [1.., 0, ..]) {
+    if matches!(json, [0xff, 0xfe, ..] | [0xfe, 0xff, ..] | [0, 1..=255, ..] | [1..=255, 0, ..]) {
         return Err(Fault::new(None, "the JSON is encoded as UTF-16", "save the file as UTF-8"));
     }
     // Some exporters fill the chunk with zeros instead of spaces.
