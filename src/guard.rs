@@ -37,6 +37,14 @@ pub fn read(path: &Path) {
     }
 }
 
+/// Files of a run's folder that no reader of runs writes over.
+const OF_A_RUN: [&str; 4] = ["journal.jsonl", "run.json", "summary.csv", "structures.csv"];
+
+/// Remembers the files of a run that is read.
+pub fn read_run(folder: &Path) {
+    OF_A_RUN.iter().for_each(|name| read(&folder.join(name)));
+}
+
 /// Refuses to write over a file that was read, under any name or link. A file that was replaced since then does not
 /// count.
 ///

@@ -1,16 +1,18 @@
 //! `rtbench compare`: what changed between runs.
 
+use super::library::file_name;
 use super::runs::write_or_print;
 use crate::compare::conditions::{ComparedRun, check_across};
 use crate::compare::runs::{self, MARGIN_PCT, Options, Shown, Side};
 use crate::error::{Error, Result};
 use crate::guard;
+use crate::names;
 use crate::record::files;
 use crate::record::stream::{LeanRun, Names};
 use crate::report::format::{self, Format};
 use crate::workloads;
 use clap::{Args, ValueEnum};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Compare recorded runs: what is exact first, then times
 ///
@@ -22,9 +24,9 @@ use std::path::{Path, PathBuf};
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
     /// Sides, the oldest first: each a folder of a run, or a comma list of folders of repeated runs
-    #[arg(value_name = "RUN[,RUN..]", num_args = 2.., required = true)]
+    #[arg(value_name = "RUN[,RUN..]", num_args = 2.., required = true, value_parser = file_name())]
     sides: Vec<String>,
-    /// Conditions that may differ: device, driver, kernel, settings, or a kind of input such as scene or camera-path
+    /// Conditions that may differ: device, driver, machine, kernel, settings, or a kind of input such as scene or camera-path
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     across: Vec<String>,
     /// Ratios of times within so many percent are the same
@@ -79,45 +81,62 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     if !(arguments.margin >= 0.0 && arguments.margin < 100.0) {
         return Err(Error::argument("--margin", format!("{} is out of range", arguments.margin), "give 0 to 100"));
     }
-    let mut names = Names::default();
+    let mut interned = Names::default();
     let mut compared: Vec<ComparedRun> = Vec::new();
     let mut sides: Vec<Side> = Vec::new();
     for text in &arguments.sides {
         let mut of_side = Vec::new();
         for path in text.split(',').filter(|path| !path.is_empty()) {
             of_side.push(compared.len());
-            compared.push(ComparedRun::new(LeanRun::read(Path::new(path), &mut names)?));
+            compared.push(ComparedRun::new(LeanRun::read(&names::file(path), &mut interned)?));
         }
         if of_side.is_empty() {
             return Err(Error::argument("RUN", format!("'{text}' names no run"), "give a folder, or a comma list"));
         }
+        check_repeats(text, &of_side, &compared)?;
         sides.push(Side { name: side_name(text), runs: of_side });
     }
     distinguish(&mut sides);
     for out in arguments.output.iter().chain(&arguments.html) {
         guard::check_output(out)?;
     }
-    check_across(&arguments.across, &names, &compared)?;
+    if arguments.output.is_some() && arguments.output == arguments.html {
+        return Err(Error::argument("--html", "it is the file of --output", "give two files"));
+    }
+    check_across(&arguments.across, &interned, &compared)?;
     let options = options(arguments, &compared);
-    let comparison = runs::compare(&mut names, compared, sides, &options)?;
+    let comparison = runs::compare(&mut interned, compared, sides, &options)?;
     let shown = Shown { rows: arguments.rows.max(1) };
     let text = match arguments.format {
-        FormatName::Text => format::write(&runs::tables(&comparison, &names, shown), Format::Text),
-        FormatName::Markdown => format::write(&runs::tables(&comparison, &names, shown), Format::Markdown),
-        FormatName::Csv => runs::csv(&comparison, &names),
-        FormatName::Json => format!("{:#}\n", runs::json(&comparison, &names)),
+        FormatName::Text => format::write(&runs::tables(&comparison, &interned, shown), Format::Text),
+        FormatName::Markdown => format::write(&runs::tables(&comparison, &interned, shown), Format::Markdown),
+        FormatName::Csv => runs::csv(&comparison, &interned),
+        FormatName::Json => format!("{:#}\n", runs::json(&comparison, &interned)),
     };
     if let Some(path) = &arguments.html {
-        files::replace(path, runs::page(&comparison, &names, shown)?.as_bytes())?;
+        files::replace(path, runs::page(&comparison, &interned, shown)?.as_bytes())?;
     }
     write_or_print(&text, arguments.output.as_deref())
+}
+
+/// Refuses a run, or a copy of it, that is on one side twice: it is no repetition.
+fn check_repeats(side: &str, of_side: &[usize], compared: &[ComparedRun]) -> Result<()> {
+    let mut ids = std::collections::BTreeSet::new();
+    match of_side.iter().find(|&&run| !ids.insert(&compared[run].run.provenance.id)) {
+        None => Ok(()),
+        Some(&run) => {
+            let folder = compared[run].run.folder.display();
+            let problem = format!("{folder} is one of the other runs of '{side}', or a copy of it");
+            Err(Error::argument("RUN", problem, "give runs that were measured one after another"))
+        }
+    }
 }
 
 /// The name of a side in tables: the folder's, with the number of further runs.
 fn side_name(text: &str) -> String {
     let mut paths = text.split(',').filter(|path| !path.is_empty());
-    let first = Path::new(paths.next().unwrap_or(text));
-    let folder = crate::record::journal::folder_of(first);
+    let first = names::file(paths.next().unwrap_or(text));
+    let folder = crate::record::journal::folder_of(&first);
     let name = folder.file_name().map_or_else(|| folder.display().to_string(), |n| n.to_string_lossy().into_owned());
     match paths.count() {
         0 => name,

@@ -5,7 +5,6 @@ use crate::error::{Error, Result};
 use crate::names;
 use crate::workloads;
 use std::collections::BTreeMap;
-use std::ffi::OsStr;
 use std::process::ExitCode;
 
 /// Measures with a workload, by flags that come from another command.
@@ -16,13 +15,8 @@ pub fn measure(workload: &str, flags: &[String]) -> Result<ExitCode> {
     Given::from_flags(workload, flags, &[])?.run()
 }
 
-/// A command line as records have it, see [`names::text`].
-fn recorded(command: &[String]) -> Vec<String> {
-    command.iter().map(|argument| names::text(OsStr::new(argument))).collect()
-}
-
 impl Given {
-    /// Flags of a workload that follow after `--` in another command.
+    /// Flags of a workload that follow after `--` in another command, as [`names::text`] writes them.
     ///
     /// # Errors
     /// There is no such workload, or it does not know a flag.
@@ -37,13 +31,15 @@ impl Given {
         }
         let command: Vec<String> =
             ["rtbench", workload].map(str::to_owned).into_iter().chain(flags.iter().cloned()).collect();
-        let matches = super::cli().try_get_matches_from(&command).map_err(|error| {
-            let text = error.render().to_string();
-            let first = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
-            Error::argument("--", first, format!("give flags of `rtbench {workload}`"))
-        })?;
+        let matches = super::cli().try_get_matches_from(command.iter().map(|argument| names::file(argument))).map_err(
+            |error| {
+                let text = error.render().to_string();
+                let first = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
+                Error::argument("--", first, format!("give flags of `rtbench {workload}`"))
+            },
+        )?;
         match matches.subcommand() {
-            Some((_, matches)) => Ok(Given { arguments: recorded(&command), ..Given::read(found, matches)? }),
+            Some((_, matches)) => Ok(Given { arguments: command, ..Given::read(found, matches)? }),
             None => Err(Error::argument("--", "no workload is named", "")),
         }
     }

@@ -1,9 +1,11 @@
 //! `rtbench gate`: a run against a committed baseline.
 
+use super::library::file_name;
 use super::{baselines, flags, output};
 use crate::compare::baseline::Baseline;
 use crate::compare::gate::{self, Judgement};
 use crate::error::{Error, Result};
+use crate::guard;
 use crate::record::stream::Names;
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
@@ -21,7 +23,7 @@ pub struct Arguments {
     #[arg(value_name = "RUN", required_unless_present = "preset", conflicts_with = "preset")]
     run: Option<PathBuf>,
     /// Measure this preset first, with the workload of the baseline; flags of the workload follow after --
-    #[arg(long = "run", value_name = "PRESET|FILE")]
+    #[arg(long = "run", value_name = "PRESET|FILE", value_parser = file_name())]
     preset: Option<String>,
     /// The baseline, as `rtbench bless` writes it
     #[arg(long, value_name = "FILE")]
@@ -35,11 +37,12 @@ pub struct Arguments {
     /// Write to a file instead of standard output
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Ambiguous times are exit code 1, and hashes that could not be compared exit code 2
+    /// Ambiguous times are exit code 1; hashes and times that could not be compared, and rows of the baseline that are
+    /// not in the plan, are exit code 2
     #[arg(long)]
     strict: bool,
     /// With --run: flags of the workload, such as -- --backend cpu
-    #[arg(last = true, value_name = "FLAGS", requires = "preset")]
+    #[arg(last = true, value_name = "FLAGS", requires = "preset", value_parser = file_name())]
     flags: Vec<String>,
 }
 
@@ -68,6 +71,12 @@ pub enum FormatName {
 /// # Errors
 /// A baseline or run that cannot be read, a run that must not be compared with it, too few rows to compare.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
+    if arguments.run.is_some() && !(arguments.flags.is_empty() && arguments.out.is_none()) {
+        let problem = "a run that is there already is judged as it is";
+        return Err(Error::argument("--", problem, "leave out --out and the flags, or measure with --run PRESET"));
+    }
+    guard::read(&arguments.baseline);
+    arguments.output.as_deref().map_or(Ok(()), guard::check_output)?;
     let baseline = Baseline::read(&arguments.baseline)?;
     match (&arguments.run, &arguments.preset) {
         (Some(run), _) => judged(arguments, &baseline, run),
@@ -86,6 +95,10 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
                 given.chain([out.display().to_string()]).chain(arguments.flags.iter().cloned()).collect();
             // Wrong and failed rows are recorded, and make the gate red below
             flags::measure(&baseline.workload, &flags)?;
+            let mut names = Names::default();
+            let devices = baselines::read(out, &mut names)?.devices;
+            let devices: Vec<&str> = devices.iter().map(|device| device.device.as_str()).collect();
+            output::note(&format!("measured on {}", devices.join(", ")));
             let code = judged(arguments, &baseline, out)?;
             if arguments.out.is_none() && code == ExitCode::SUCCESS {
                 let _ = std::fs::remove_dir_all(out);
@@ -113,8 +126,18 @@ fn judged(arguments: &Arguments, baseline: &Baseline, run: &Path) -> Result<Exit
 fn conclude(arguments: &Arguments, judgement: &Judgement, folder: &Path) -> Result<ExitCode> {
     let bless = format!("rtbench bless {} --baseline {}", folder.display(), arguments.baseline.display());
     if !judgement.is_green() {
-        output::note(&format!("if the differences are intended: {bless}"));
+        if judgement.can_be_blessed {
+            output::note(&format!("if the differences are intended: {bless}"));
+        }
         return Ok(ExitCode::from(1));
+    }
+    if arguments.strict && judgement.times_left_out > 0 {
+        let problem = format!("{} times have a budget and were not judged", judgement.times_left_out);
+        return Err(Error::file(&arguments.baseline, None, problem, bless));
+    }
+    if arguments.strict && judgement.rows_outside > 0 {
+        let problem = format!("{} rows of the baseline are not in the plan of this run", judgement.rows_outside);
+        return Err(Error::file(&arguments.baseline, None, problem, bless));
     }
     if arguments.strict && judgement.hashes_left_out > 0 {
         let problem = format!("{} hashes are of another driver and were not compared", judgement.hashes_left_out);

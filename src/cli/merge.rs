@@ -6,6 +6,7 @@ use crate::harness::{environment, summary};
 use crate::record::files;
 use crate::record::journal::{self, FILE_NAME, Journal, JournalWriter, Record};
 use crate::record::merge::{self, Merged, Part};
+use crate::record::row::Status;
 use crate::record::run::End;
 use crate::record::terminal::counted;
 use crate::workloads;
@@ -114,6 +115,12 @@ fn conclude(merged: &Merged, out: &Path) -> ExitCode {
     let rows = counted(rows, "row", "rows");
     let devices = counted(merged.provenance.devices.len(), "device", "devices");
     output::note(&format!("{rows} of {} on {devices} in {}", counted(runs, "run", "runs"), out.display()));
+    let count = |status: Status| merged.rows.iter().filter(|row| row.status == status).count();
+    let (wrong, failed) = (count(Status::Wrong), count(Status::Failed));
+    if wrong + failed > 0 {
+        output::complain(&format!("{wrong} rows are wrong, {failed} failed: `rtbench report` lists them"));
+        return ExitCode::from(if wrong > 0 { 1 } else { 2 });
+    }
     match merged.gaps() {
         0 => ExitCode::SUCCESS,
         gaps => {

@@ -8,8 +8,8 @@ use crate::camera::{CameraPath, View};
 use crate::error::{Error, Result};
 use crate::guard;
 use crate::record::picture;
-use crate::workloads::trace::backend::{Config, Counters, Prepared, Size};
-use crate::workloads::trace::{Selection, pictures, rays, tracer};
+use crate::workloads::trace::backend::{Config, Counters, Prepared, Size, surface_epsilon};
+use crate::workloads::trace::{Selection, counting, pictures, rays, tracer};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -114,6 +114,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         None => pictures::image(&mut *prepared, config, view, size)?,
         Some(heatmap) => paint(heatmap, arguments.scale_max, &mut *prepared, config, view, size)?,
     };
+    let one = std::slice::from_ref(view);
+    let counted =
+        counting::count(&mut *prepared, config, one, (size, surface_epsilon(scene.bounds())), &mut || Ok(()))?;
+    counted.warnings(1).iter().for_each(|warning| output::note(&format!("warning: {warning}")));
     picture::write_png(&arguments.out, size.width, size.height, &rgba)?;
     output::print(&format!(
         "{}: {} {} {config:?}, {}x{}, frame {} of {} on {}\n",

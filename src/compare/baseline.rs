@@ -2,6 +2,7 @@
 //! written sorted, with one line per row and part, so that an intended change is a readable difference; budgets are a
 //! person's.
 
+use super::unique::UniqueKeys;
 use crate::error::{Error, Result};
 use crate::record::files;
 use serde::{Deserialize, Serialize};
@@ -131,6 +132,7 @@ impl Baseline {
             Error::file(path, Some(error.line().max(1)), format!("no baseline: {problem}"), hint)
         };
         let first: First = serde_json::from_str(text).map_err(wrong)?;
+        serde_json::from_str::<UniqueKeys>(text).map_err(wrong)?;
         if first.schema.as_deref() != Some(SCHEMA) {
             let problem = match first.schema {
                 Some(other) => format!("schema {other:?} instead of {SCHEMA:?}"),
@@ -157,11 +159,26 @@ impl Baseline {
             if budget.share.is_none() && budget.absolute.is_none() {
                 return refuse(name, format!("the budget of {name} allows nothing"), "give share or absolute");
             }
+            if name == FRAME_TIME && (budget.share.is_none() || budget.absolute.is_some()) {
+                return refuse(name, "times are judged by their share alone".into(), "give share, not absolute");
+            }
             if !self.knows(name) {
                 return refuse(name, format!("there is no quantity '{name}'"), "name one of the file's quantities");
             }
         }
+        for (name, row) in &self.rows {
+            let bad =
+                |value: Option<f64>, least: f64| value.is_some_and(|value| !(value >= least && value.is_finite()));
+            if bad(row.frame_ms, f64::MIN_POSITIVE) || bad(row.noise_pct, 0.0) {
+                return refuse(name, format!("a time of {name} is out of range"), "undo the edit, or bless a run anew");
+            }
+        }
         Ok(())
+    }
+
+    /// The first budget of a quantity that the baseline does not have.
+    pub fn budget_without_quantity(&self) -> Option<&str> {
+        self.budgets.keys().map(String::as_str).find(|name| !self.knows(name))
     }
 
     /// True for the name of a quantity, with its part (`part.name`) or without.

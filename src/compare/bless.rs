@@ -77,6 +77,10 @@ pub fn bless(
         return Err(Error::file(folder, None, problem, "bless a run with verified rows"));
     }
     baseline.quantities = quantities.into_iter().collect();
+    if let Some(name) = baseline.budget_without_quantity() {
+        let problem = format!("the baseline has a budget for {name}, and no row of this run has such a quantity");
+        return Err(Error::file(folder, None, problem, "remove the budget, or bless a run that has it"));
+    }
     Ok(baseline)
 }
 

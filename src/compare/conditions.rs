@@ -2,11 +2,11 @@
 
 use crate::device::DeviceType;
 use crate::error::{Error, Result};
-use crate::record::run::Provenance;
+use crate::record::run::{Environment, Provenance};
 use crate::record::stream::{LeanRow, LeanRun, Names};
 
 /// Conditions that every workload has, as `--across` takes them; each kind of input is another one.
-pub const GENERAL: [&str; 4] = ["device", "driver", "kernel", "settings"];
+pub const GENERAL: [&str; 5] = ["device", "driver", "machine", "kernel", "settings"];
 
 /// A device of a run, as far as times depend on it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -15,15 +15,25 @@ pub struct DeviceIdentity {
     pub device: String,
     /// Driver and its version.
     pub driver: String,
+    /// The machine around it: processor, threads, and variables that change what is measured.
+    pub machine: String,
+}
+
+/// A machine in words.
+fn machine(environment: &Environment) -> String {
+    let variables = environment.variables.iter().map(|(name, value)| format!(", {name}={value}"));
+    format!("{} with {} threads{}", environment.cpu, environment.logical_cpus, variables.collect::<String>())
 }
 
 /// The devices of a run.
 pub fn devices(provenance: &Provenance) -> Vec<DeviceIdentity> {
-    let identity = |device: &crate::record::run::DeviceRecord| {
+    let identity = |(index, device): (usize, &crate::record::run::DeviceRecord)| {
         let info = &device.info;
+        let of_part = provenance.merged.iter().find(|part| part.devices.contains(&index));
+        let environment = of_part.map_or(&provenance.environment, |part| &part.environment);
         let mut name = info.name.clone();
         if info.device_type.computes_on_cpu() {
-            let cpu = &provenance.environment.cpu;
+            let cpu = &environment.cpu;
             if !cpu.is_empty() && !name.contains(cpu.as_str()) {
                 name += &format!(" on {cpu}");
             }
@@ -36,9 +46,9 @@ pub fn devices(provenance: &Provenance) -> Vec<DeviceIdentity> {
             name += ", with shader checks";
         }
         let driver = if info.driver.is_empty() { info.backend.clone() } else { info.driver.clone() };
-        DeviceIdentity { device: name, driver }
+        DeviceIdentity { device: name, driver, machine: machine(environment) }
     };
-    provenance.devices.iter().map(identity).collect()
+    provenance.devices.iter().enumerate().map(identity).collect()
 }
 
 /// One condition in which two rows differ.
@@ -111,6 +121,9 @@ pub fn differences(names: &Names, old: (&ComparedRun, &LeanRow), new: (&Compared
         }
         if before.driver != now.driver {
             add("driver".into(), before.driver.clone(), now.driver.clone());
+        }
+        if before.machine != now.machine {
+            add("machine".into(), before.machine.clone(), now.machine.clone());
         }
     }
     if old.1.kernels != new.1.kernels {

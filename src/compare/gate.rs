@@ -48,6 +48,12 @@ pub struct Judgement {
     pub exact_compared: usize,
     /// Hashes of the baseline that were not compared, because they are another driver's.
     pub hashes_left_out: usize,
+    /// Times with a budget that were not judged: the baseline or the run has none, or they are another driver's.
+    pub times_left_out: usize,
+    /// Rows of the baseline that the plan of the run does not name.
+    pub rows_outside: usize,
+    /// True if no row of the run is wrong or failed.
+    pub can_be_blessed: bool,
 }
 
 impl Judgement {
@@ -93,7 +99,7 @@ pub fn judge(
         }
         seen.insert(key);
     }
-    gate.artifacts();
+    gate.artifacts(&seen);
     gate.kernels(kernels);
     let vanished = scope::vanished(names, run, baseline, &seen);
     let mut judgement = gate.finished();
@@ -105,6 +111,9 @@ pub fn judge(
     if !new.is_empty() {
         judgement.announcements.push(format!("rows without a baseline, which pass: {}", several(&new)));
     }
+    judgement.rows_outside = vanished.outside;
+    let has_result = |row: &LeanRow| !matches!(row.status, Status::Wrong | Status::Failed);
+    judgement.can_be_blessed = run.run.rows.iter().all(has_result);
     if vanished.outside > 0 {
         let text = format!("{} rows of the baseline are not in the plan of this run", vanished.outside);
         judgement.announcements.push(text);
@@ -212,8 +221,11 @@ impl Gate<'_> {
 
     fn time(&mut self, key: &str, row: &LeanRow, held: &BaselineRow) {
         let Some(share) = self.baseline.budgets.get(FRAME_TIME).and_then(|budget| budget.share) else { return };
-        let (Some(old), Some(times)) = (held.frame_ms, row.times.as_ref()) else { return };
-        if !self.is_same_driver(row) || times.mean_ms <= old * (1.0 + share) {
+        let (Some(old), Some(times), true) = (held.frame_ms, row.times.as_ref(), self.is_same_driver(row)) else {
+            self.judgement.times_left_out += 1;
+            return;
+        };
+        if times.mean_ms <= old * (1.0 + share) {
             return;
         }
         let new = times.mean_ms;
@@ -225,9 +237,19 @@ impl Gate<'_> {
         }
     }
 
-    /// What was built: artifacts that both have. One that is missing has no rows either.
-    fn artifacts(&mut self) {
-        let run = self.run;
+    /// What was built: artifacts that both have. One that is missing is expected where the run has a row of it.
+    fn artifacts(&mut self, rows: &BTreeSet<String>) {
+        let (run, baseline) = (self.run, self.baseline);
+        let built: BTreeSet<String> = run.run.artifacts.iter().map(|a| axes_text(self.names, &a.axes)).collect();
+        for (name, held) in baseline.artifacts.iter().filter(|(name, _)| !built.contains(*name)) {
+            let is_of = |row: &String| {
+                let axes: Vec<&str> = row.split("; ").collect();
+                name.split("; ").all(|axis| axes.contains(&axis))
+            };
+            if !held.is_empty() && rows.iter().any(is_of) {
+                self.judgement.failures.push(finding(name, "status", "built", "gone"));
+            }
+        }
         for artifact in &run.run.artifacts {
             let name = axes_text(self.names, &artifact.axes);
             let now = counts(self.names, &artifact.exact, self.machine);
@@ -277,6 +299,14 @@ impl Gate<'_> {
         if !self.unknown.is_empty() {
             let list = self.unknown.iter().cloned().collect::<Vec<_>>().join(", ");
             self.judgement.announcements.push(format!("quantities that the baseline does not hold: {list}"));
+        }
+        if self.judgement.times_left_out > 0 {
+            let text = format!(
+                "{} times have a budget and were not judged: the baseline or the run has none, or they are not of {}; \
+                 bless again after a budget for {FRAME_TIME} was added",
+                self.judgement.times_left_out, self.baseline.driver
+            );
+            self.judgement.announcements.push(text);
         }
         if self.judgement.hashes_left_out > 0 {
             let text = format!(

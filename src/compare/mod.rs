@@ -8,3 +8,4 @@ pub mod judge;
 pub mod pair;
 pub mod rounds;
 pub mod runs;
+mod unique;

@@ -129,13 +129,13 @@ pub fn table(judgement: &RoundsJudgement, [a, b]: [&str; 2]) -> Table {
         format!("A: {a}"),
         format!("B: {b}"),
         format!(
-            "{} rounds, interleaved; geometric mean of B/A {:.4}, of the null run A/A {:.4}; sign-test intervals that hold \
-             with 95 % for all {} cases together",
-            judgement.rounds,
-            judgement.mean,
-            judgement.null_mean,
-            judgement.cells.len()
+            "{} rounds, interleaved; geometric mean of B/A {:.4}, of the null run A/A {:.4}",
+            judgement.rounds, judgement.mean, judgement.null_mean,
         ),
+        match judgement.has_intervals {
+            true => format!("sign-test intervals that hold with 95 % for all {} cases together", judgement.cells.len()),
+            false => "instead of intervals, the smallest and the largest ratio of the rounds".to_owned(),
+        },
     ];
     if judgement.is_biased {
         notes.push("A differs from itself: every verdict is ambiguous; measure again on a quiet machine".into());

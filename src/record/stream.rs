@@ -136,7 +136,7 @@ impl LeanRun {
         if !journal.is_file() {
             return Err(Error::file(path, None, format!("no run: there is no {FILE_NAME} in it"), hint));
         }
-        guard::read(&journal);
+        guard::read_run(&folder);
         let file = File::open(&journal).map_err(|e| Error::file(&journal, None, format!("cannot read: {e}"), hint))?;
         if let Err(TryLockError::WouldBlock) = file.try_lock_shared() {
             let problem = "another process is writing this run";

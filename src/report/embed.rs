@@ -2,6 +2,7 @@
 
 use super::html::escape;
 use crate::error::{Error, Result};
+use crate::guard;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use std::collections::BTreeMap;
@@ -32,6 +33,7 @@ impl Pictures {
             let path = entry.map_err(|e| failed(folder, e))?.path();
             let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
             let (true, Some(name)) = (path.extension().is_some_and(|e| e == "png"), name) else { continue };
+            guard::read(&path);
             let bytes = std::fs::read(&path).map_err(|e| failed(&path, e))?;
             if !bytes.starts_with(SIGNATURE) {
                 return Err(Error::file(&path, None, "no PNG", "remove it, or render it again"));

@@ -1,6 +1,7 @@
 //! Recorded runs, read back.
 
 use crate::error::{Error, Result};
+use crate::guard;
 use crate::record::journal::FILE_NAME;
 use crate::workloads::trace::record::{self, TraceJournal};
 use std::path::{Path, PathBuf};
@@ -30,6 +31,7 @@ impl RecordedRun {
             return Err(Error::file(path, None, format!("no run: there is no {FILE_NAME} in it"), hint));
         }
         let run = record::read(&journal)?;
+        guard::read_run(&folder);
         if run.structures.is_empty() && run.configurations.is_empty() {
             let problem = "no case of it has a result";
             return Err(Error::file(&journal, None, problem, "leave it out, or resume it: its rows say what failed"));

@@ -1,5 +1,7 @@
 //! compare, gate, bless and ab as a user runs them, on real small runs of the CPU twins.
 
+mod review;
+
 use rtbench::compare::baseline::Baseline;
 use rtbench::compare::bless::KernelCosts;
 use rtbench::compare::conditions::ComparedRun;

@@ -4,6 +4,7 @@ use super::{Arguments, Measured, Recorder, kept};
 use crate::compare::rounds::{CellTimes, LEAST_ROUNDS, rounds_needed};
 use crate::error::{Error, Result};
 use crate::harness::ab::SIDES;
+use crate::names;
 use crate::record::statistics::interleaved_order;
 use crate::record::stream::{LeanRun, Names};
 use serde_json::Value;
@@ -78,7 +79,12 @@ fn process(arguments: &Arguments, program: &Path, folder: &Path) -> Result<BTree
     // A relative name without a folder would be looked for in PATH
     let program = std::fs::canonicalize(program).unwrap_or_else(|_| program.to_owned());
     let mut command = Command::new(&program);
-    command.arg(&arguments.workload).args(&arguments.flags).arg("--quiet").arg("--out").arg(folder);
+    command
+        .arg(&arguments.workload)
+        .args(arguments.flags.iter().map(|flag| names::file(flag)))
+        .arg("--quiet")
+        .arg("--out")
+        .arg(folder);
     let output = command
         .stdin(std::process::Stdio::null())
         .output()

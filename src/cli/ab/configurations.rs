@@ -20,6 +20,10 @@ pub(super) fn measure(arguments: &Arguments, a: &str, b: &str) -> Result<Measure
     let given = Given::from_flags(&arguments.workload, &arguments.flags, &["--out", "--resume", "--passes"])?;
     let info = given.workload.info();
     let (values_a, values_b) = (values(info, "A", a)?, values(info, "B", b)?);
+    if let Some(axis) = values_a.keys().chain(values_b.keys()).find(|axis| given.values.contains_key(*axis)) {
+        let problem = format!("--{} is what A and B differ in", axis.replace('_', "-"));
+        return Err(Error::argument("--", problem, "leave it out of the flags"));
+    }
     let plan_a = given.with(&values_a).plan()?;
     let plan_b = given.with(&values_b).plan()?;
     let pairs = paired(info, &values_a, &values_b, &plan_a.cases, &plan_b.cases)?;
@@ -86,6 +90,9 @@ fn values(info: &Info, place: &str, text: &str) -> Result<Values> {
         let axis = axis.trim().replace('-', "_");
         if !known.contains(&axis.as_str()) {
             return Err(Error::argument(place, format!("there is no axis '{axis}'"), hint()));
+        }
+        if values.contains_key(&axis) {
+            return Err(Error::argument(place, format!("{axis} is given twice"), "give it once"));
         }
         values.insert(axis, vec![value.trim().to_owned()]);
     }

@@ -3,9 +3,11 @@
 mod builds;
 mod configurations;
 
+use super::library::file_name;
 use super::{output, runs::write_or_print};
 use crate::compare::rounds::{self, CellTimes, LEAST_ROUNDS, MARGIN_PCT};
 use crate::error::{Error, Result};
+use crate::guard;
 use crate::harness::environment;
 use crate::record::files;
 use crate::report::format::{self, Format};
@@ -25,10 +27,10 @@ use std::path::{Path, PathBuf};
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
     /// The first side: values of axes
-    #[arg(value_name = "A", required_unless_present = "exe", conflicts_with = "exe", requires = "b")]
+    #[arg(value_name = "A", value_parser = file_name(), required_unless_present = "exe", conflicts_with = "exe", requires = "b")]
     a: Option<String>,
     /// The second side: values of axes
-    #[arg(value_name = "B")]
+    #[arg(value_name = "B", value_parser = file_name())]
     b: Option<String>,
     /// Program of the first side, then of the second one
     #[arg(long, value_name = "FILE", num_args = 1)]
@@ -52,7 +54,7 @@ pub struct Arguments {
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Flags of the workload, such as -- --scene hall --config P,PS --resolution 256
-    #[arg(last = true, value_name = "FLAGS")]
+    #[arg(last = true, value_name = "FLAGS", value_parser = file_name())]
     flags: Vec<String>,
 }
 
@@ -91,6 +93,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     if !(arguments.margin >= 0.0 && arguments.margin < 100.0) {
         return Err(Error::argument("--margin", format!("{} is out of range", arguments.margin), "give 0 to 100"));
     }
+    arguments.exe.iter().for_each(|program| guard::read(program));
+    arguments.output.as_deref().map_or(Ok(()), guard::check_output)?;
     let (sides, cells) = match (&arguments.a, &arguments.b) {
         (Some(a), Some(b)) => ([a.clone(), b.clone()], configurations::measure(arguments, a, b)?),
         _ => {
@@ -133,6 +137,7 @@ impl Recorder {
         files::create_run_folder(&out)?;
         let path = out.join("rounds.jsonl");
         let file = File::create_new(&path).map_err(|source| Error::output(&path, source))?;
+        guard::read(&path);
         let mut recorder = Recorder { path, file };
         recorder.write(&json!({
             "record": "ab", "schema": "rtbench-ab/1", "workload": arguments.workload, "a": sides[0], "b": sides[1],

@@ -22,14 +22,14 @@ pub fn compare(names: &mut Names, runs: Vec<ComparedRun>, sides: Vec<Side>, opti
     check_workloads(&runs)?;
     let machine: Vec<Name> = options.machine.iter().map(|name| names.intern(name)).collect();
     let names: &Names = names;
-    let with_device = runs.iter().any(|run| run.devices.len() > 1);
-    let key = |row: &LeanRow| if with_device { row.device } else { 0 };
+    let role = |run: &ComparedRun, row: &LeanRow| run.run.provenance.role(row.device);
+    let with_device = runs.iter().any(|run| run.run.rows.iter().any(|row| role(run, row) > 0));
     let mut places: HashMap<PairKey, usize, foldhash::fast::RandomState> = HashMap::default();
     // Of each row, its index in each run
     let mut found: Vec<Vec<Option<u32>>> = Vec::new();
     for (index, run) in runs.iter().enumerate() {
         for (place, row) in run.run.rows.iter().enumerate() {
-            let at = *places.entry((&row.axes, key(row))).or_insert_with(|| {
+            let at = *places.entry((&row.axes, role(run, row))).or_insert_with(|| {
                 found.push(vec![None; runs.len()]);
                 found.len() - 1
             });
@@ -48,7 +48,7 @@ pub fn compare(names: &mut Names, runs: Vec<ComparedRun>, sides: Vec<Side>, opti
         sides,
     };
     let mut unlike: BTreeMap<Difference, usize> = BTreeMap::new();
-    let (mut pairs, mut like) = (0, 0);
+    let (mut pairs, mut like, mut broken) = (0, 0, 0);
     for of_runs in &found {
         let rows: Vec<Option<(&ComparedRun, &LeanRow)>> = comparison
             .runs
@@ -66,16 +66,22 @@ pub fn compare(names: &mut Names, runs: Vec<ComparedRun>, sides: Vec<Side>, opti
         };
         let index = comparison.rows.len();
         let outcome = judge(names, &comparison.sides, &rows, options);
-        if let Some((old, new)) = outcome.pair {
+        if outcome.is_pair {
             pairs += 1;
             like += usize::from(outcome.unlike.iter().all(|unlike| options.across.contains(&unlike.condition)));
-            let is_same_content = outcome.unlike.iter().all(|unlike| {
-                GENERAL.contains(&unlike.condition.as_str()) || options.across.contains(&unlike.condition)
-            });
-            let is_one_driver = !outcome.unlike.iter().any(|unlike| ["device", "driver"].contains(&&*unlike.condition));
-            if is_same_content && old.status == Status::Ok && new.status == Status::Ok {
-                let changes = &mut comparison.changes;
-                comparison.exact_compared += exact::compare(index, old, new, &machine, is_one_driver, changes);
+        }
+        comparison.exact_compared += exact_of(names, &rows, index, &machine, options, &mut comparison.changes);
+        // Sides in between: what must not be compared is not shown with the others
+        let last = comparison.sides.len().saturating_sub(1);
+        for (number, side) in comparison.sides.iter().enumerate().take(last).skip(1) {
+            let first = comparison.sides[0].runs.iter().find_map(|&run| rows[run]);
+            for other in side.runs.iter().filter_map(|&run| rows[run]) {
+                let found = first.map_or(Vec::new(), |first| differences(names, first, other));
+                if found.iter().any(|difference| !options.across.contains(&difference.condition)) {
+                    row.times_ms[number] = None;
+                }
+                found.into_iter().for_each(|difference| *unlike.entry(difference).or_default() += 1);
+                broken += usize::from(other.1.status != Status::Ok);
             }
         }
         for difference in outcome.unlike {
@@ -87,6 +93,9 @@ pub fn compare(names: &mut Names, runs: Vec<ComparedRun>, sides: Vec<Side>, opti
     refuse(&comparison, &unlike, pairs, like, options)?;
     comparison.means = means(names, &comparison.rows, &labels);
     comparison.notes = notes(&comparison, &unlike, options);
+    if broken > 0 {
+        comparison.notes.push(format!("{broken} rows of sides in between have no result"));
+    }
     Ok(comparison)
 }
 
@@ -148,9 +157,38 @@ fn side_times(side: &Side, rows: &[Option<(&ComparedRun, &LeanRow)>]) -> Vec<f64
     side.runs.iter().filter_map(of).collect()
 }
 
-struct Outcome<'r> {
-    /// A row of each side, where both have one.
-    pair: Option<(&'r LeanRow, &'r LeanRow)>,
+/// Compares the exact quantities of all rows with a result with those of the first one that has any. Returns how many
+/// were compared.
+fn exact_of(
+    names: &Names,
+    rows: &[Option<(&ComparedRun, &LeanRow)>],
+    index: usize,
+    machine: &[Name],
+    options: &Options,
+    changes: &mut Vec<exact::Change>,
+) -> usize {
+    let mut with_result = rows.iter().flatten().filter(|(_, row)| row.status == Status::Ok);
+    let Some(first) = with_result.next() else { return 0 };
+    let mut compared = 0;
+    for other in with_result {
+        let unlike = differences(names, *first, *other);
+        let is_same_content = unlike
+            .iter()
+            .all(|unlike| GENERAL.contains(&unlike.condition.as_str()) || options.across.contains(&unlike.condition));
+        if is_same_content {
+            let is_one_driver = !unlike.iter().any(|unlike| ["device", "driver"].contains(&&*unlike.condition));
+            let mut found = Vec::new();
+            compared += exact::compare(index, first.1, other.1, machine, is_one_driver, &mut found);
+            found.retain(|change| !changes.iter().rev().take_while(|c| c.row == index).any(|known| known == change));
+            changes.extend(found);
+        }
+    }
+    compared
+}
+
+struct Outcome {
+    /// True if both sides have a row.
+    is_pair: bool,
     unlike: Vec<Difference>,
     ratio: Option<super::Ratio>,
     verdict: Verdict,
@@ -162,8 +200,8 @@ fn judge<'r>(
     sides: &[Side],
     rows: &[Option<(&'r ComparedRun, &'r LeanRow)>],
     options: &Options,
-) -> Outcome<'r> {
-    let none = |verdict| Outcome { pair: None, unlike: Vec::new(), ratio: None, verdict };
+) -> Outcome {
+    let none = |verdict| Outcome { is_pair: false, unlike: Vec::new(), ratio: None, verdict };
     let of = |side: Option<&Side>| -> Vec<(&'r ComparedRun, &'r LeanRow)> {
         side.into_iter().flat_map(|side| &side.runs).filter_map(|&run| rows[run]).collect()
     };
@@ -171,7 +209,11 @@ fn judge<'r>(
     let (first, last) = match (old.first(), new.first()) {
         (Some(first), Some(last)) => (*first, *last),
         (None, None) => return none(Verdict::Incomparable("only sides in between have it".into())),
-        (None, Some(_)) => return none(Verdict::New),
+        (None, Some((_, row))) if row.status == Status::Ok => return none(Verdict::New),
+        (None, Some((_, row))) => {
+            let problem = format!("new, {}: {}", row.status.word(), names.text(row.message));
+            return none(Verdict::Error(problem));
+        }
         (Some(_), None) => return none(Verdict::Gone),
     };
     let mut unlike = Vec::new();
@@ -182,7 +224,7 @@ fn judge<'r>(
             }
         }
     }
-    let mut outcome = Outcome { pair: Some((first.1, last.1)), unlike, ratio: None, verdict: Verdict::Ambiguous };
+    let mut outcome = Outcome { is_pair: true, unlike, ratio: None, verdict: Verdict::Ambiguous };
     let without =
         |rows: &[(&ComparedRun, &'r LeanRow)]| rows.iter().map(|(_, row)| *row).find(|row| row.status != Status::Ok);
     let problem = |row: &LeanRow| format!("{}: {}", row.status.word(), names.text(row.message));

@@ -258,6 +258,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
         scene.move_to(Placement { offset, exponent: 0 });
     }
     // A scene that is read from this cache depends on the cache's source files as well.
+    sources.iter().for_each(|source| guard::read(&source.path));
     sources.into_iter().for_each(|source| sources::add(|_| source));
     sources::add(|_| SourceFile {
         path: sources::resolve_folder(path),
