@@ -26,7 +26,8 @@ pub struct Arguments {
     /// Sides, the oldest first: each a folder of a run, or a comma list of folders of repeated runs
     #[arg(value_name = "RUN[,RUN..]", num_args = 2.., required = true, value_parser = file_name())]
     sides: Vec<String>,
-    /// Conditions that may differ: device, driver, machine, kernel, settings, or a kind of input such as scene or camera-path
+    /// Conditions that may differ: device, driver, machine, kernel, settings, or a kind of input such as scene or
+    /// camera-path
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     across: Vec<String>,
     /// Ratios of times within so many percent are the same

@@ -157,8 +157,8 @@ fn side_times(side: &Side, rows: &[Option<(&ComparedRun, &LeanRow)>]) -> Vec<f64
     side.runs.iter().filter_map(of).collect()
 }
 
-/// Compares the exact quantities of all rows with a result with those of the first one that has any. Returns how many
-/// were compared.
+/// Compares the exact quantities of all rows with a result with those of the first one that has any, those of the last
+/// side before those of sides in between: of each quantity one difference is listed. Returns how many were compared.
 fn exact_of(
     names: &Names,
     rows: &[Option<(&ComparedRun, &LeanRow)>],
@@ -169,8 +169,8 @@ fn exact_of(
 ) -> usize {
     let mut with_result = rows.iter().flatten().filter(|(_, row)| row.status == Status::Ok);
     let Some(first) = with_result.next() else { return 0 };
-    let mut compared = 0;
-    for other in with_result {
+    let (mut compared, mut listed) = (0, Vec::new());
+    for other in with_result.rev() {
         let unlike = differences(names, *first, *other);
         let is_same_content = unlike
             .iter()
@@ -179,7 +179,8 @@ fn exact_of(
             let is_one_driver = !unlike.iter().any(|unlike| ["device", "driver"].contains(&&*unlike.condition));
             let mut found = Vec::new();
             compared += exact::compare(index, first.1, other.1, machine, is_one_driver, &mut found);
-            found.retain(|change| !changes.iter().rev().take_while(|c| c.row == index).any(|known| known == change));
+            found.retain(|change| !listed.contains(&change.quantity));
+            listed.extend(found.iter().map(|change| change.quantity));
             changes.extend(found);
         }
     }
