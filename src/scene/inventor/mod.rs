@@ -31,10 +31,12 @@
 mod crease;
 mod faces;
 mod header;
+mod list;
 mod node_type;
 mod parse;
 mod shapes;
 mod state;
+mod strings;
 mod transform;
 mod traverse;
 mod tree;

@@ -118,17 +118,20 @@ impl InventorReader {
         node.children[which].iter().try_for_each(|&child| self.traverse(path, tree, child, state, crease_angle))
     }
 
-    /// Traverses the child that `whichChild` selects: an index, -1 for none, -2 for the index that the enclosing switch
-    /// selected, or the number of the copy, -3 for all.
+    /// Traverses the child that `whichChild` selects: an index, -1 for none, -3 for all, -2 for what the state has: the
+    /// index that the last switch with another value selected, or the number of the copy. A switch that inherits leaves
+    /// the state unchanged.
     fn switch<'t>(&mut self, file: FileContext<'t, '_>, node: &Node, state: &mut State<'t>) -> Result<(), ReadError> {
         let count = node.children.len();
         let which = match node.integer("whichChild", -1)? {
-            // The enclosing switch may have more children.
+            // The number is of another node, which may have more children.
             -2 if state.selected_child >= 0 && count > 0 => state.selected_child % count as i64,
             -2 => state.selected_child,
-            which => which,
+            which => {
+                state.selected_child = which;
+                which
+            }
         };
-        state.selected_child = which;
         match usize::try_from(which) {
             Ok(which) if which < count => self.children(file, node, which..which + 1, state),
             _ if which == -3 => self.children(file, node, 0..count, state),
