@@ -101,6 +101,7 @@ impl<'a> Parser<'a, '_> {
             children: Vec::new(),
             height: 1,
             cost: 1,
+            varies: false,
         };
         loop {
             let Some(word) = self.tokens.next() else {
@@ -138,20 +139,28 @@ impl<'a> Parser<'a, '_> {
                 self.mesh.warnings.add(&format!("{} ignored", String::from_utf8_lossy(name)));
                 Ok(None)
             }
-            Some(_) => {
+            Some(kind) => {
                 self.mesh.charge(size_of::<Node>())?;
+                node.varies = match kind {
+                    NodeType::Include => true,
+                    NodeType::Switch => node.varies || matches!(node.integer("whichChild", -1), Ok(-2)),
+                    // Their children depend on the number of their own copies.
+                    NodeType::Array | NodeType::MultipleCopy => false,
+                    _ => node.varies,
+                };
                 self.tree.nodes.push(node);
                 Ok(Some(self.tree.nodes.len() as u32 - 1))
             }
         }
     }
 
-    /// Makes the height of a node exceed that of a child.
+    /// Makes the height of a node exceed that of a child, and the node vary with it.
     ///
     /// # Errors
     /// The nesting is too deep.
     fn raise_height(&mut self, node: &mut Node, child: u32) -> Result<(), Fault> {
         node.height = node.height.max(1 + self.tree.node(child).height);
+        node.varies |= self.tree.node(child).varies;
         if node.height > MAX_DEPTH { Err(self.too_deep()) } else { Ok(()) }
     }
 

@@ -4,10 +4,8 @@ use super::InventorReader;
 use super::node_type::NodeType;
 use super::parse::MAX_DEPTH;
 use super::state::State;
-use super::transform::{PROJECTION, affine};
 use super::tree::{Node, Tree, Values};
 use crate::scene::text::{Fault, ReadError, place};
-use glam::{DAffine3, DVec3};
 use std::path::Path;
 
 impl InventorReader {
@@ -107,7 +105,7 @@ impl InventorReader {
     }
 
     /// Traverses the children in the range `which`.
-    fn children<'t>(
+    pub(super) fn children<'t>(
         &mut self,
         file: FileContext<'t, '_>,
         node: &Node,
@@ -143,62 +141,6 @@ impl InventorReader {
         }
     }
 
-    /// Traverses the children of an `Array` once for each of its copies, along one to three axes. The number of the
-    /// copy is what a switch with `whichChild -2` inherits.
-    fn array<'t>(&mut self, file: FileContext<'t, '_>, node: &Node, state: &mut State<'t>) -> Result<(), ReadError> {
-        let axes = [
-            ("numElements1", "separation1", DVec3::X),
-            ("numElements2", "separation2", DVec3::Y),
-            ("numElements3", "separation3", DVec3::Z),
-        ];
-        let (mut counts, mut steps, mut start) = ([0; 3], [DVec3::ZERO; 3], DVec3::ZERO);
-        for (axis, (number, separation, default)) in axes.into_iter().enumerate() {
-            counts[axis] = node.integer(number, 1)?;
-            steps[axis] = node.vector(separation, default)?;
-            let last = steps[axis] * counts[axis].saturating_sub(1).max(0) as f64;
-            match node.word("origin")? {
-                Some(b"CENTER") => start -= last / 2.0,
-                Some(b"LAST") => start -= last,
-                _ => {}
-            }
-        }
-        // An empty row makes the array empty; the loops over rows would still take time.
-        if counts[0] < 1 {
-            return Ok(());
-        }
-        let mut number = 0;
-        for k in 0..counts[2] {
-            self.count_work(1)?;
-            for j in 0..counts[1] {
-                for i in 0..counts[0] {
-                    self.count_work(1)?;
-                    let [i, j, k] = [i, j, k].map(|index| index as f64);
-                    let place = start + steps[0] * i + steps[1] * j + steps[2] * k;
-                    let mut copy = *state;
-                    copy.transform *= DAffine3::from_translation(place);
-                    copy.selected_child = number;
-                    number += 1;
-                    self.children(file, node, 0..node.children.len(), &mut copy)?;
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Traverses the children of a `MultipleCopy` once for each of its matrices, the number of which a switch inherits.
-    fn copies<'t>(&mut self, file: FileContext<'t, '_>, node: &Node, state: &mut State<'t>) -> Result<(), ReadError> {
-        let identity = glam::DMat4::IDENTITY.to_cols_array();
-        let matrices = node.tuples("matrix", 16)?.unwrap_or(&identity);
-        for (number, matrix) in matrices.as_chunks().0.iter().enumerate() {
-            let mut copy = *state;
-            copy.selected_child = number as i64;
-            copy.transform *=
-                affine(matrix).ok_or_else(|| Fault::new(None, PROJECTION, "projections cannot be traced"))?;
-            self.children(file, node, 0..node.children.len(), &mut copy)?;
-        }
-        Ok(())
-    }
-
     /// Reads an included file with the current state, which the file cannot change.
     fn include(&mut self, path: &Path, node: &Node, state: &State) -> Result<(), ReadError> {
         let name = match node.field("name").map(|field| &field.values) {
@@ -224,8 +166,8 @@ impl InventorReader {
 
 /// The file that is being traversed.
 #[derive(Clone, Copy)]
-struct FileContext<'t, 'p> {
+pub(super) struct FileContext<'t, 'p> {
     path: &'p Path,
-    tree: &'t Tree,
+    pub tree: &'t Tree,
     crease_angle: f64,
 }
