@@ -28,13 +28,16 @@
 //! **Curved surfaces** have [`SEGMENTS`] segments around their axis, unless the user sets others; `Complexity` is
 //! ignored.
 
+mod copies;
 mod crease;
 mod faces;
 mod header;
+mod list;
 mod node_type;
 mod parse;
 mod shapes;
 mod state;
+mod strings;
 mod transform;
 mod traverse;
 mod tree;
@@ -144,7 +147,14 @@ impl InventorReader {
     /// # Errors
     /// The limit is exceeded.
     fn count_work(&mut self, values: usize) -> Result<(), Fault> {
-        if self.work_is_too_much(values) {
+        self.check_work(values)?;
+        self.work += values;
+        Ok(())
+    }
+
+    /// Checks that this many more values may be processed.
+    fn check_work(&self, values: usize) -> Result<(), Fault> {
+        if self.work.saturating_add(values) > self.most_work() {
             return Err(Fault::new(None, "nested copies repeat too many values", REPEATED));
         }
         Ok(())
@@ -155,7 +165,8 @@ impl InventorReader {
     /// # Errors
     /// The limit is exceeded.
     fn count_faces(&mut self, faces: usize) -> Result<(), Fault> {
-        if self.work_is_too_much(faces / FACES_PER_VALUE) {
+        self.work = self.work.saturating_add(faces / FACES_PER_VALUE);
+        if self.work > self.most_work() {
             return Err(Fault::new(
                 None,
                 "too many smooth faces meet in its corners",
@@ -165,8 +176,8 @@ impl InventorReader {
         Ok(())
     }
 
-    fn work_is_too_much(&mut self, more: usize) -> bool {
-        self.work = self.work.saturating_add(more);
-        self.work > WORK * self.mesh.work_factor() + WORK_PER_BYTE * self.includes.bytes()
+    /// The limit of processed values.
+    fn most_work(&self) -> usize {
+        WORK * self.mesh.work_factor() + WORK_PER_BYTE * self.includes.bytes()
     }
 }

@@ -67,6 +67,17 @@ impl NodeType {
         use NodeType::{Array, Group, Irrelevant, Levels, MultipleCopy, Separator, Switch, TransformSeparator};
         matches!(self, Group | Separator | TransformSeparator | Switch | Levels | Array | MultipleCopy | Irrelevant)
     }
+
+    /// True if `~` after the value of a field has an effect. The reference implementation does not look for it in face
+    /// sets and copies, except for `origin`: there the value counts.
+    pub fn can_ignore(self, field: &str) -> bool {
+        use NodeType::{Array, FaceSet, IndexedFaceSet, IndexedTriangleStripSet, QuadMesh, TriangleStripSet};
+        match self {
+            Array => field == "origin",
+            NodeType::MultipleCopy => false,
+            _ => !matches!(self, IndexedFaceSet | FaceSet | IndexedTriangleStripSet | TriangleStripSet | QuadMesh),
+        }
+    }
 }
 
 /// The field of that name, if this reader supports it.

@@ -2,13 +2,16 @@
 //!
 //! Every node is `Name { fields and nodes }`. The extent of a field's values can be recognised without knowing the
 //! field's type: they are numbers, a string, a list in brackets, words in parentheses, a node, or a single word. So
-//! unknown nodes can be skipped. Commas are blanks. `~` after a field means that the field is ignored. `=` connects a
-//! field to an animated value; the values before it are the initial ones.
+//! unknown nodes can be skipped. Only strings without quotes need the names of their fields (`strings`). Commas are
+//! blanks. `~` after a field means that the field is ignored. `=` connects a field to an animated value; the values
+//! before it are the initial ones.
 
+use super::list::{List, is_number, value};
 use super::node_type::{self, NodeType, NotANumber};
+use super::strings;
 use super::tree::{Field, Node, Tree, Values};
 use crate::scene::mesh_builder::MeshBuilder;
-use crate::scene::text::{Fault, Syntax, Tokenizer, number, odd, quote_bytes};
+use crate::scene::text::{Fault, Syntax, Tokenizer, odd, quote_bytes};
 use std::collections::HashMap;
 
 /// The largest nesting depth of nodes, through `USE` and includes.
@@ -45,10 +48,6 @@ struct Parser<'a, 'm> {
 /// True for a token with which no name of a node or field can begin.
 fn is_punctuation(word: &[u8]) -> bool {
     matches!(word[0], b'{' | b'}' | b'[' | b']' | b'(' | b')' | b'|' | b'=' | b'~' | b'"')
-}
-
-fn is_number(word: &[u8]) -> bool {
-    matches!(word[0], b'0'..=b'9' | b'+' | b'-' | b'.')
 }
 
 impl<'a> Parser<'a, '_> {
@@ -102,6 +101,7 @@ impl<'a> Parser<'a, '_> {
             children: Vec::new(),
             height: 1,
             cost: 1,
+            varies: false,
         };
         loop {
             let Some(word) = self.tokens.next() else {
@@ -139,20 +139,28 @@ impl<'a> Parser<'a, '_> {
                 self.mesh.warnings.add(&format!("{} ignored", String::from_utf8_lossy(name)));
                 Ok(None)
             }
-            Some(_) => {
+            Some(kind) => {
                 self.mesh.charge(size_of::<Node>())?;
+                node.varies = match kind {
+                    NodeType::Include => true,
+                    NodeType::Switch => node.varies || matches!(node.integer("whichChild", -1), Ok(-2)),
+                    // Their children depend on the number of their own copies.
+                    NodeType::Array | NodeType::MultipleCopy => false,
+                    _ => node.varies,
+                };
                 self.tree.nodes.push(node);
                 Ok(Some(self.tree.nodes.len() as u32 - 1))
             }
         }
     }
 
-    /// Makes the height of a node exceed that of a child.
+    /// Makes the height of a node exceed that of a child, and the node vary with it.
     ///
     /// # Errors
     /// The nesting is too deep.
     fn raise_height(&mut self, node: &mut Node, child: u32) -> Result<(), Fault> {
         node.height = node.height.max(1 + self.tree.node(child).height);
+        node.varies |= self.tree.node(child).varies;
         if node.height > MAX_DEPTH { Err(self.too_deep()) } else { Ok(()) }
     }
 
@@ -169,7 +177,11 @@ impl<'a> Parser<'a, '_> {
         if ignored {
             self.tokens.next();
         }
-        let values = if ignored { Some(Values::Ignored) } else { values };
+        let values = if ignored && node.kind.can_ignore(&String::from_utf8_lossy(name)) {
+            Some(Values::Ignored)
+        } else {
+            values
+        };
         if self.tokens.peek() == Some(b"=") {
             self.tokens.next();
             self.connection()?;
@@ -197,7 +209,9 @@ impl<'a> Parser<'a, '_> {
             return Err(self.tokens.fault(format!("{}: the file ends", quote_bytes(name)), "the file is truncated"));
         };
         let mut list = List::new(known);
+        let string = if strings::is_string(name) { self.string() } else { None };
         match first[0] {
+            _ if string.is_some() => list.words.extend(string.filter(|_| list.wanted).map(Into::into)),
             b'~' | b'=' => return Ok(None),
             b'[' => {
                 self.tokens.next();
@@ -243,6 +257,19 @@ impl<'a> Parser<'a, '_> {
         Ok(values)
     }
 
+    /// Reads the string without quotes that begins here; `None` if the value has another form.
+    fn string(&mut self) -> Option<&'a [u8]> {
+        let length = strings::length(self.tokens.peek_to_space())?;
+        let mut after = self.tokens.clone();
+        let text = after.take(length);
+        // Only a node has a brace after its name.
+        if matches!(text, b"DEF" | b"USE") || after.clone().peek() == Some(b"{") {
+            return None;
+        }
+        self.tokens = after;
+        Some(text)
+    }
+
     /// Adds a value that begins with `word` to the list.
     #[inline]
     fn item(&mut self, name: &[u8], word: &'a [u8], list: &mut List) -> Result<(), Fault> {
@@ -277,6 +304,10 @@ impl<'a> Parser<'a, '_> {
             return Ok(());
         }
         let text = match word {
+            [b'"', .., b'"'] if list.wanted && list.rule == NotANumber::Default => {
+                list.number(f64::NAN);
+                return Ok(());
+            }
             [b'"', inner @ .., b'"'] => inner,
             _ if is_punctuation(word) => {
                 let (name, word) = (String::from_utf8_lossy(name), quote_bytes(word));
@@ -312,66 +343,5 @@ impl<'a> Parser<'a, '_> {
         }
         self.mesh.warnings.add("connected fields keep the values in the file: animations are ignored");
         Ok(())
-    }
-}
-
-/// Parses a number, decimal or hexadecimal.
-#[inline]
-fn value(word: &[u8]) -> Option<f64> {
-    match number::double(word) {
-        Some((value, length)) if length == word.len() => value.is_finite().then_some(value),
-        _ => {
-            let digits = word.strip_prefix(b"0x").or(word.strip_prefix(b"0X"))?;
-            u32::from_str_radix(std::str::from_utf8(digits).ok()?, 16).ok().map(f64::from)
-        }
-    }
-}
-
-/// The values of a field while it is parsed.
-struct List {
-    wanted: bool,
-    rule: NotANumber,
-    numbers: Vec<f64>,
-    words: Vec<Box<[u8]>>,
-    node: Option<u32>,
-}
-
-impl List {
-    fn new(known: Option<&'static str>) -> List {
-        let rule = known.map_or(NotANumber::Word, NotANumber::of);
-        List { wanted: known.is_some(), rule, numbers: Vec::new(), words: Vec::new(), node: None }
-    }
-
-    /// True if a word begins a list of numbers; otherwise it is a string without quotes.
-    fn begins(&self, word: &[u8]) -> bool {
-        match self.rule {
-            NotANumber::Word => {
-                !self.wanted && is_number(word) && (value(word).is_some() || odd::value(word).is_some())
-            }
-            _ => self.continues(word),
-        }
-    }
-
-    /// True for a word that is a further number of a list without brackets.
-    fn continues(&self, word: &[u8]) -> bool {
-        let odd = matches!(self.rule, NotANumber::Position | NotANumber::Default);
-        is_number(word) || odd && odd::value(word).is_some()
-    }
-
-    #[inline]
-    fn number(&mut self, value: f64) {
-        if self.wanted {
-            self.numbers.push(value);
-        }
-    }
-
-    /// The values of the field. A list of numbers and words becomes words, which are refused if numbers are needed.
-    fn values(self) -> Option<Values> {
-        match self {
-            List { wanted: false, .. } => None,
-            List { node: Some(node), .. } => Some(Values::Node(node)),
-            List { words, numbers, .. } if !words.is_empty() || numbers.is_empty() => Some(Values::Words(words.into())),
-            List { numbers, .. } => Some(Values::Numbers(numbers.into())),
-        }
     }
 }

@@ -176,7 +176,7 @@ pub struct State<'t> {
     pub clockwise: bool,
     /// The ambient light.
     pub ambient: DVec3,
-    /// The child that the enclosing switch selected, as in `whichChild`, or the number of the enclosing copy.
+    /// The child that the last switch selected by itself, as in `whichChild`, or the number of the enclosing copy.
     pub selected_child: i64,
 }
 

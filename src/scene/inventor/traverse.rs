@@ -4,10 +4,8 @@ use super::InventorReader;
 use super::node_type::NodeType;
 use super::parse::MAX_DEPTH;
 use super::state::State;
-use super::transform::{PROJECTION, affine};
 use super::tree::{Node, Tree, Values};
 use crate::scene::text::{Fault, ReadError, place};
-use glam::{DAffine3, DVec3};
 use std::path::Path;
 
 impl InventorReader {
@@ -107,7 +105,7 @@ impl InventorReader {
     }
 
     /// Traverses the children in the range `which`.
-    fn children<'t>(
+    pub(super) fn children<'t>(
         &mut self,
         file: FileContext<'t, '_>,
         node: &Node,
@@ -118,17 +116,20 @@ impl InventorReader {
         node.children[which].iter().try_for_each(|&child| self.traverse(path, tree, child, state, crease_angle))
     }
 
-    /// Traverses the child that `whichChild` selects: an index, -1 for none, -2 for the index that the enclosing switch
-    /// selected, or the number of the copy, -3 for all.
+    /// Traverses the child that `whichChild` selects: an index, -1 for none, -3 for all, -2 for what the state has: the
+    /// index that the last switch with another value selected, or the number of the copy. A switch that inherits leaves
+    /// the state unchanged.
     fn switch<'t>(&mut self, file: FileContext<'t, '_>, node: &Node, state: &mut State<'t>) -> Result<(), ReadError> {
         let count = node.children.len();
         let which = match node.integer("whichChild", -1)? {
-            // The enclosing switch may have more children.
+            // The number is of another node, which may have more children.
             -2 if state.selected_child >= 0 && count > 0 => state.selected_child % count as i64,
             -2 => state.selected_child,
-            which => which,
+            which => {
+                state.selected_child = which;
+                which
+            }
         };
-        state.selected_child = which;
         match usize::try_from(which) {
             Ok(which) if which < count => self.children(file, node, which..which + 1, state),
             _ if which == -3 => self.children(file, node, 0..count, state),
@@ -138,62 +139,6 @@ impl InventorReader {
                 Ok(())
             }
         }
-    }
-
-    /// Traverses the children of an `Array` once for each of its copies, along one to three axes. The number of the
-    /// copy is what a switch with `whichChild -2` inherits.
-    fn array<'t>(&mut self, file: FileContext<'t, '_>, node: &Node, state: &mut State<'t>) -> Result<(), ReadError> {
-        let axes = [
-            ("numElements1", "separation1", DVec3::X),
-            ("numElements2", "separation2", DVec3::Y),
-            ("numElements3", "separation3", DVec3::Z),
-        ];
-        let (mut counts, mut steps, mut start) = ([0; 3], [DVec3::ZERO; 3], DVec3::ZERO);
-        for (axis, (number, separation, default)) in axes.into_iter().enumerate() {
-            counts[axis] = node.integer(number, 1)?;
-            steps[axis] = node.vector(separation, default)?;
-            let last = steps[axis] * counts[axis].saturating_sub(1).max(0) as f64;
-            match node.word("origin")? {
-                Some(b"CENTER") => start -= last / 2.0,
-                Some(b"LAST") => start -= last,
-                _ => {}
-            }
-        }
-        // An empty row makes the array empty; the loops over rows would still take time.
-        if counts[0] < 1 {
-            return Ok(());
-        }
-        let mut number = 0;
-        for k in 0..counts[2] {
-            self.count_work(1)?;
-            for j in 0..counts[1] {
-                for i in 0..counts[0] {
-                    self.count_work(1)?;
-                    let [i, j, k] = [i, j, k].map(|index| index as f64);
-                    let place = start + steps[0] * i + steps[1] * j + steps[2] * k;
-                    let mut copy = *state;
-                    copy.transform *= DAffine3::from_translation(place);
-                    copy.selected_child = number;
-                    number += 1;
-                    self.children(file, node, 0..node.children.len(), &mut copy)?;
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Traverses the children of a `MultipleCopy` once for each of its matrices, the number of which a switch inherits.
-    fn copies<'t>(&mut self, file: FileContext<'t, '_>, node: &Node, state: &mut State<'t>) -> Result<(), ReadError> {
-        let identity = glam::DMat4::IDENTITY.to_cols_array();
-        let matrices = node.tuples("matrix", 16)?.unwrap_or(&identity);
-        for (number, matrix) in matrices.as_chunks().0.iter().enumerate() {
-            let mut copy = *state;
-            copy.selected_child = number as i64;
-            copy.transform *=
-                affine(matrix).ok_or_else(|| Fault::new(None, PROJECTION, "projections cannot be traced"))?;
-            self.children(file, node, 0..node.children.len(), &mut copy)?;
-        }
-        Ok(())
     }
 
     /// Reads an included file with the current state, which the file cannot change.
@@ -221,8 +166,8 @@ impl InventorReader {
 
 /// The file that is being traversed.
 #[derive(Clone, Copy)]
-struct FileContext<'t, 'p> {
+pub(super) struct FileContext<'t, 'p> {
     path: &'p Path,
-    tree: &'t Tree,
+    pub tree: &'t Tree,
     crease_angle: f64,
 }

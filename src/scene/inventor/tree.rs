@@ -36,6 +36,8 @@ pub struct Node {
     pub height: usize,
     /// Number of values that are processed when the node is visited.
     pub cost: usize,
+    /// True if the subtree may depend on the number of the copy that it is in.
+    pub varies: bool,
 }
 
 /// The nodes of a file.

@@ -1,6 +1,7 @@
 //! Memory that readers need in addition to the mesh, and the limits that it counts against.
 
 use super::MeshBuilder;
+use crate::scene::Triangle;
 use crate::scene::text::Fault;
 
 impl MeshBuilder {
@@ -29,6 +30,17 @@ impl MeshBuilder {
     /// The factor by which limits on the time of repetitions grow with their memory, at least 1.
     pub fn work_factor(&self) -> usize {
         self.limits.work_factor()
+    }
+
+    /// Checks that this many more triangles, of which the vertices are not counted, do not exceed a limit.
+    ///
+    /// # Errors
+    /// They do.
+    pub fn check_triangles(&self, more: usize) -> Result<(), Fault> {
+        if more > 0 {
+            self.limits.elements(self.triangles.len().saturating_add(more - 1))?;
+        }
+        self.limits.check_room(more.saturating_mul(2 * size_of::<Triangle>()))
     }
 
     /// Releases memory that was charged.

@@ -209,6 +209,20 @@ impl<'a> Tokenizer<'a> {
         Some(word)
     }
 
+    /// The bytes from the start of the next token to white space, whatever they mean; the position does not change.
+    pub fn peek_to_space(&mut self) -> &'a [u8] {
+        self.seek();
+        let rest = &self.bytes[self.at..];
+        &rest[..rest.iter().position(|&byte| byte <= b' ').unwrap_or(rest.len())]
+    }
+
+    /// Reads the next `length` bytes of [`Tokenizer::peek_to_space`] as one token.
+    pub fn take(&mut self, length: usize) -> &'a [u8] {
+        self.line = self.here;
+        self.at += length;
+        &self.bytes[self.at - length..self.at]
+    }
+
     /// Reads the next token if it is in the line of the last one.
     #[inline]
     pub fn next_on_line(&mut self) -> Option<&'a [u8]> {

@@ -1,6 +1,7 @@
 //! Files of text formats that were once refused or read wrongly, with their right values, and variations of them.
 
 mod inventor;
+mod inventor_values;
 mod meshes;
 mod obj;
 mod ply;

@@ -32,7 +32,13 @@ fn inventor() {
     for (text, words) in [
         // An empty array with many copies
         ("Array { numElements1 0 numElements2 1e15 Cube {} } Cube {}", ""),
-        ("Array { numElements2 0 numElements3 1e15 Cube {} } Cube {}", "nested copies repeat too many values"),
+        ("Array { numElements2 0 numElements3 1e15 Cube {} } Cube {}", ""),
+        // Refused before the memory of the first thousands of copies is exceeded
+        ("Array { numElements1 1e30 Cube {} }", "nested copies repeat too many values"),
+        (
+            "Array { numElements1 900000 Array { numElements1 100 Cube {} } }",
+            "there are more than 134217728 vertices or triangles",
+        ),
         ("Array { numElements1 -1e300 origin CENTER Cube {} } Cube {}", ""),
         ("POINTS QuadMesh { verticesPerColumn 1e18 verticesPerRow 0 } Cube {}", ""),
         // Nested nodes with a cost of 2^70
