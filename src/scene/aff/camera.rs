@@ -51,6 +51,12 @@ impl Viewpoint {
                 numbers[given] = number;
                 given += 1;
             }
+            // A word in place of a number is no entity, even if it is spelled like one.
+            for _ in given..wanted {
+                if tokens.peek_on_line().is_some_and(|word| !loose::ends_view(word)) {
+                    tokens.skip(1, "v")?;
+                }
+            }
             let rest = loose::skip_words(tokens)?;
             let fault = match keyword {
                 _ if given < wanted || rest.is_some() => Some(format!("{keyword}: it is not {wanted} numbers")),

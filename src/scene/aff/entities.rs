@@ -119,13 +119,14 @@ impl AffReader {
         } else if !colour.as_vec3().is_finite() {
             self.warn(path, tokens, &format!("{entity}: the colour is not finite: the default is used"));
         }
-        self.surplus(entity, path, tokens)?;
+        self.surplus(entity, given == 3, path, tokens)?;
         Ok(if given == 3 && colour.as_vec3().is_finite() { colour } else { default })
     }
 
-    /// Skips what follows the numbers of an entity in its line, with a warning.
-    fn surplus(&mut self, entity: &str, path: &Path, tokens: &mut Tokenizer) -> Result<(), Fault> {
-        if let Some(word) = loose::skip_words(tokens)? {
+    /// Skips what follows the numbers of an entity in its line. This is a warning if the entity was `complete`;
+    /// otherwise there is one already.
+    fn surplus(&mut self, entity: &str, complete: bool, path: &Path, tokens: &mut Tokenizer) -> Result<(), Fault> {
+        if let Some(word) = loose::skip_words(tokens)?.filter(|_| complete) {
             let word = quote_bytes(word);
             self.warn(path, tokens, &format!("{entity}: {word} and what follows in the line is ignored"));
         }
@@ -191,7 +192,7 @@ impl AffReader {
         if given < 3 {
             self.warn(path, tokens, &format!("l: {given} numbers instead of 3: the light is ignored"));
         }
-        self.surplus("l", path, tokens)?;
+        self.surplus("l", given == 3 && channels == 3, path, tokens)?;
         if given < 3 || !self.building() {
             return Ok(());
         }
@@ -241,7 +242,7 @@ impl AffReader {
             tokens.skip(1, "f")?;
             self.texture();
         }
-        self.surplus("f", path, tokens)?;
+        self.surplus("f", given == FILL.len(), path, tokens)?;
         let diffuse = (colour * diffuse).as_vec3();
         let ambient = diffuse * 0.1 * self.ambient.as_vec3();
         let specular = glam::Vec3::splat(specular as f32);
@@ -263,7 +264,7 @@ impl AffReader {
         if !is_finite(given.min(9)..given) {
             self.warn(path, tokens, "fm: a number is not finite: its default is used");
         }
-        self.surplus("fm", path, tokens)?;
+        self.surplus("fm", given == numbers.len(), path, tokens)?;
         let known = |range: std::ops::Range<usize>| given >= range.end && is_finite(range);
         let colour = |at: usize, default| match known(at..at + 3) {
             true => DVec3::from_slice(&numbers[at..]),
