@@ -12,7 +12,13 @@ const KEYWORDS: [&[u8]; 28] = [
 /// Reads up to `N` numbers, which need not be finite and may be on several lines, and returns how many there are.
 pub fn numbers<const N: usize>(tokens: &mut Tokenizer, context: &str) -> Result<([f64; N], usize), Fault> {
     let (mut numbers, mut given) = ([0.0; N], 0);
-    while given < N && tokens.peek().is_some_and(|word| odd::value(word).is_some()) {
+    while given < N {
+        // A look at the next line would move to it.
+        let before = tokens.clone();
+        if tokens.peek().is_none_or(|word| odd::value(word).is_none()) {
+            *tokens = before;
+            break;
+        }
         numbers[given] = tokens.any_number(context)?;
         given += 1;
     }
