@@ -9,7 +9,7 @@ use super::{
 };
 use crate::error::{Error, Result};
 use crate::names;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
@@ -117,15 +117,30 @@ fn finish(mut scene: Scene, place: &str, options: &Options) -> Result<Scene> {
     }
     let extent = Extent::of(&scene);
     let fault = |(problem, hint): (String, _)| Error::file(path, None, problem, hint);
+    drop_lights(&mut scene, |position| position.is_finite());
     scene.complete(extent).map_err(fault)?;
     let bounds = scene.survey();
     scene.size_fault(bounds).map_or(Ok(()), |found| Err(fault(found)))?;
     scene.normalise(bounds);
     // Scaling can move a light out of the range of floats.
-    if let Some(i) = scene.lights.iter().position(|l| !l.position.distance_squared(bounds.center()).is_finite()) {
-        return Err(fault((format!("light {i} is too far away in relation to the scene's extent"), "move it nearer")));
-    }
+    drop_lights(&mut scene, |position| position.distance_squared(bounds.center()).is_finite());
     Ok(scene)
+}
+
+/// Drops the lights with other positions than those `allowed`, each with a warning.
+fn drop_lights(scene: &mut Scene, allowed: impl Fn(Vec3) -> bool) {
+    let Scene { lights, warnings, .. } = scene;
+    let mut number = 0;
+    lights.retain(|light| {
+        number += 1;
+        let keep = allowed(light.position);
+        if !keep {
+            let place = light.position;
+            let extent = "too far away in relation to the scene's extent";
+            warnings.push(format!("light {number} at {place} is {extent}: the light is ignored"));
+        }
+        keep
+    });
 }
 
 /// The largest number of readings of a scene: a second time if it is far from the origin, and further times if its

@@ -1,6 +1,7 @@
 //! The camera: the viewpoint `v`, the keyframes named `camera`, and the frames of the animation `a`.
 
 use super::keys::Keyframes;
+use super::loose;
 use crate::scene::text::{Fault, Tokenizer};
 use crate::scene::{Pose, SceneCamera};
 use glam::DVec3;
@@ -25,42 +26,61 @@ impl Default for Viewpoint {
 }
 
 impl Viewpoint {
-    /// False if a number is not finite.
-    pub fn is_finite(&self) -> bool {
-        [self.from, self.at, self.up, DVec3::splat(self.angle)].iter().all(|v| v.is_finite())
-    }
-
-    /// Reads the parameters of `v`: its keywords in any order; all of them are optional.
-    pub fn read(tokens: &mut Tokenizer) -> Result<Viewpoint, Fault> {
-        let mut view = Viewpoint::default();
+    /// Reads the parameters of `v`: its keywords in any order; all of them are optional. The inner result is the
+    /// problem of a viewpoint that is not usable.
+    ///
+    /// # Errors
+    /// None: what is malformed is the inner result.
+    pub fn read(tokens: &mut Tokenizer) -> Result<Result<Viewpoint, Fault>, Fault> {
+        let (mut view, mut problem) = (Viewpoint::default(), None);
         loop {
-            let keyword = tokens.peek().unwrap_or_default();
-            let vector = match keyword {
-                b"from" => &mut view.from,
-                b"at" => &mut view.at,
-                b"up" => &mut view.up,
-                b"angle" => {
-                    tokens.skip(1, "v")?;
-                    view.angle = tokens.any_number("angle")?;
-                    if view.angle.is_finite() && !(view.angle > 0.0 && view.angle < 180.0) {
-                        let problem = format!("the field of view of {} degrees is impossible", view.angle);
-                        return Err(tokens.fault(problem, "give an angle between 0 and 180"));
-                    }
-                    continue;
-                }
-                b"hither" | b"resolution" => {
-                    tokens.skip(1, "v")?;
-                    tokens.any_number("v")?;
-                    if keyword == b"resolution" {
-                        tokens.any_number("v")?;
-                    }
-                    continue;
-                }
-                _ => return Ok(view),
+            let (keyword, wanted) = match tokens.peek().unwrap_or_default() {
+                b"from" => ("from", 3),
+                b"at" => ("at", 3),
+                b"up" => ("up", 3),
+                b"angle" => ("angle", 1),
+                b"hither" => ("hither", 1),
+                b"resolution" => ("resolution", 2),
+                _ => break,
             };
             tokens.skip(1, "v")?;
-            *vector = DVec3::from(tokens.any_numbers("v")?);
+            let line = tokens.line();
+            let (mut numbers, mut given) = ([0.0; 3], 0);
+            while given < wanted {
+                let ([number], 1) = loose::numbers(tokens, "v")? else { break };
+                numbers[given] = number;
+                given += 1;
+            }
+            // A word in place of a number is no entity, even if it is spelled like one.
+            for _ in given..wanted {
+                if tokens.peek_on_line().is_some_and(|word| !loose::ends_view(word)) {
+                    tokens.skip(1, "v")?;
+                }
+            }
+            let rest = loose::skip_words(tokens)?;
+            let fault = match keyword {
+                _ if given < wanted || rest.is_some() => Some(format!("{keyword}: it is not {wanted} numbers")),
+                "hither" | "resolution" => None,
+                _ if numbers.iter().any(|number| !(*number as f32).is_finite()) => {
+                    Some("the viewpoint is not finite".into())
+                }
+                "angle" if !(numbers[0] > 0.0 && numbers[0] < 180.0) => {
+                    Some(format!("the field of view of {} degrees is not between 0 and 180", numbers[0]))
+                }
+                _ => None,
+            };
+            if let Some(text) = fault {
+                problem.get_or_insert_with(|| Fault::new(Some(line), format!("v: {text}"), ""));
+            }
+            match keyword {
+                "from" => view.from = numbers.into(),
+                "at" => view.at = numbers.into(),
+                "up" => view.up = numbers.into(),
+                "angle" => view.angle = numbers[0],
+                _ => {}
+            }
         }
+        Ok(problem.map_or(Ok(view), Err))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::camera::{Animation, Viewpoint};
 use super::keys::{Keyframes, rotation};
-use super::{AffReader, Pass};
+use super::{AffReader, Pass, loose};
 use crate::scene::Material;
 use crate::scene::text::{Fault, ReadError, Tokenizer, odd, place, quote_bytes};
 use glam::{DAffine3, DVec3};
@@ -109,35 +109,46 @@ impl AffReader {
         }
     }
 
-    /// Reads a colour. One that is not finite is a warning, and replaced by `default`.
+    /// Reads the colour of an entity that is nothing else. One that is not three finite numbers is a warning, and
+    /// replaced by `default`.
     fn colour(&mut self, entity: &str, default: DVec3, path: &Path, tokens: &mut Tokenizer) -> Result<DVec3, Fault> {
-        let colour = DVec3::from(tokens.any_numbers(entity)?);
-        if colour.is_finite() {
-            return Ok(colour);
+        let (numbers, given) = loose::numbers::<3>(tokens, entity)?;
+        let colour = DVec3::from(numbers);
+        if given < 3 {
+            self.warn(path, tokens, &format!("{entity}: {given} numbers instead of 3: the default is used"));
+        } else if !colour.as_vec3().is_finite() {
+            self.warn(path, tokens, &format!("{entity}: the colour is not finite: the default is used"));
         }
-        self.warn(path, tokens, &format!("{entity}: the colour is not finite: the default is used"));
-        Ok(default)
+        self.surplus(entity, given == 3, path, tokens)?;
+        Ok(if given == 3 && colour.as_vec3().is_finite() { colour } else { default })
     }
 
-    /// Reads a number of a material. One that is not finite is a warning, and replaced by `default`.
-    fn property(&mut self, entity: &str, default: f64, path: &Path, tokens: &mut Tokenizer) -> Result<f64, Fault> {
-        let number = tokens.any_number(entity)?;
-        if number.is_finite() {
-            return Ok(number);
+    /// Skips what follows the numbers of an entity in its line. This is a warning if the entity was `complete`;
+    /// otherwise there is one already.
+    fn surplus(&mut self, entity: &str, complete: bool, path: &Path, tokens: &mut Tokenizer) -> Result<(), Fault> {
+        if let Some(word) = loose::skip_words(tokens)?.filter(|_| complete) {
+            let word = quote_bytes(word);
+            self.warn(path, tokens, &format!("{entity}: {word} and what follows in the line is ignored"));
         }
-        self.warn(path, tokens, &format!("{entity}: a number is not finite: its default is used"));
-        Ok(default)
+        Ok(())
     }
 
     fn entity(&mut self, entity: &[u8], path: &Path, tokens: &mut Tokenizer) -> Result<(), Fault> {
         let keys = self.pass == Pass::Keys;
         match entity {
             b"v" => {
-                let view = Viewpoint::read(tokens)?;
-                if !view.is_finite() {
-                    self.warn(path, tokens, "v: the viewpoint is not finite: ignored");
+                let line = tokens.line();
+                self.view_place = place(path, line);
+                self.view = match Viewpoint::read(tokens)? {
+                    Ok(view) => Some(view),
+                    Err(fault) => {
+                        let place = place(path, fault.line.unwrap_or(line));
+                        if !keys {
+                            self.mesh.warnings.add(&format!("{place}: {}: the viewpoint is ignored", fault.problem));
+                        }
+                        None
+                    }
                 }
-                self.view = Some(view).filter(Viewpoint::is_finite);
             }
             b"b" => self.background = self.colour("b", DVec3::ZERO, path, tokens)?.as_vec3().max(glam::Vec3::ZERO),
             b"am" => self.ambient = self.colour("am", DVec3::ONE, path, tokens)?,
@@ -161,7 +172,12 @@ impl AffReader {
             b"f" => self.plain_material(path, tokens)?,
             b"fm" => self.material(path, tokens)?,
             _ if keys => self.skip_primitive(entity, tokens)?,
-            _ => self.primitive(entity, tokens)?,
+            _ => {
+                let normals = self.primitive(entity, tokens)?;
+                if !normals {
+                    self.warn(path, tokens, "a normal is not three finite numbers: such normals are computed");
+                }
+            }
         }
         Ok(())
     }
@@ -169,11 +185,24 @@ impl AffReader {
     /// Reads the parameters of `l`, or of `la`, which keyframes animate.
     fn light(&mut self, animated: bool, path: &Path, tokens: &mut Tokenizer) -> Result<(), Fault> {
         let name = if animated { Some(tokens.need("la")?) } else { None };
-        let position = DVec3::from(tokens.any_numbers("l")?);
-        let coloured = tokens.peek_on_line().is_some_and(|word| odd::value(word).is_some());
-        let colour = if coloured { self.colour("l", DVec3::ONE, path, tokens)? } else { DVec3::ONE };
-        if !self.building() {
+        let (position, given) = loose::numbers::<3>(tokens, "l")?;
+        let position = DVec3::from(position);
+        let coloured = given == 3 && tokens.peek_on_line().is_some_and(|word| odd::value(word).is_some());
+        let (numbers, channels) = if coloured { loose::numbers::<3>(tokens, "l")? } else { ([1.0; 3], 3) };
+        if given < 3 {
+            self.warn(path, tokens, &format!("l: {given} numbers instead of 3: the light is ignored"));
+        }
+        self.surplus("l", given == 3 && channels == 3, path, tokens)?;
+        if given < 3 || !self.building() {
             return Ok(());
+        }
+        let mut colour = DVec3::from(numbers);
+        if channels < 3 {
+            self.warn(path, tokens, &format!("l: a colour of {channels} numbers instead of 3: the light is white"));
+            colour = DVec3::ONE;
+        } else if !colour.is_finite() {
+            self.warn(path, tokens, "l: the colour is not finite: the default is used");
+            colour = DVec3::ONE;
         }
         if !position.is_finite() {
             self.warn(path, tokens, "l: the light's position is not finite: the light is ignored");
@@ -186,17 +215,18 @@ impl AffReader {
                 (transform.transform_point3(position), visible)
             }
         };
-        if visible { self.mesh.light(position, colour) } else { Ok(()) }
+        if visible && let Some(problem) = self.mesh.light(position, colour)? {
+            self.warn(path, tokens, &format!("l: {problem}"));
+        }
+        Ok(())
     }
 
     /// Reads the parameters of `f`: colour, Kd, Ks, exponent, transparency, index of refraction, and optionally the
     /// name of a texture on the same line. Some may be missing, with a warning.
     fn plain_material(&mut self, path: &Path, tokens: &mut Tokenizer) -> Result<(), Fault> {
-        let (mut numbers, mut given) = (FILL, 0);
-        while given < FILL.len() && tokens.peek().is_some_and(|word| odd::value(word).is_some()) {
-            numbers[given] = tokens.any_number("f")?;
-            given += 1;
-        }
+        let (found, given) = loose::numbers::<8>(tokens, "f")?;
+        let mut numbers = FILL;
+        numbers[..given].copy_from_slice(&found[..given]);
         if given < FILL.len() {
             self.warn(path, tokens, &format!("f: {given} numbers instead of 8: the others have their defaults"));
         }
@@ -207,10 +237,12 @@ impl AffReader {
         let colour = if grey { GREY } else { DVec3::from_slice(&numbers) };
         let or_default = |i: usize| if numbers[i].is_finite() { numbers[i] } else { FILL[i] };
         let [diffuse, specular, exponent, transparency] = [3, 4, 5, 6].map(or_default);
-        if tokens.peek_on_line().is_some_and(|word| word.contains(&b'.')) {
+        let texture = given == FILL.len() && loose::peek(tokens).is_some_and(|word| odd::value(word).is_none());
+        if texture {
             tokens.skip(1, "f")?;
             self.texture();
         }
+        self.surplus("f", given == FILL.len(), path, tokens)?;
         let diffuse = (colour * diffuse).as_vec3();
         let ambient = diffuse * 0.1 * self.ambient.as_vec3();
         let specular = glam::Vec3::splat(specular as f32);
@@ -221,12 +253,27 @@ impl AffReader {
 
     /// Reads the parameters of `fm`: ambient, diffuse and specular colour, exponent, transparency, index of refraction.
     fn material(&mut self, path: &Path, tokens: &mut Tokenizer) -> Result<(), Fault> {
-        let ambient = self.colour("fm", GREY * 0.1, path, tokens)? * self.ambient;
-        let diffuse = self.colour("fm", GREY, path, tokens)?;
-        let specular = self.colour("fm", DVec3::ZERO, path, tokens)?;
-        let exponent = self.property("fm", FILL[5], path, tokens)?;
-        let transparency = self.property("fm", FILL[6], path, tokens)?;
-        self.property("fm", FILL[7], path, tokens)?;
+        let (numbers, given) = loose::numbers::<12>(tokens, "fm")?;
+        if given < numbers.len() {
+            self.warn(path, tokens, &format!("fm: {given} numbers instead of 12: the others have their defaults"));
+        }
+        let is_finite = |range: std::ops::Range<usize>| numbers[range].iter().all(|number| number.is_finite());
+        if !is_finite(0..given.min(9)) {
+            self.warn(path, tokens, "fm: the colour is not finite: the default is used");
+        }
+        if !is_finite(given.min(9)..given) {
+            self.warn(path, tokens, "fm: a number is not finite: its default is used");
+        }
+        self.surplus("fm", given == numbers.len(), path, tokens)?;
+        let known = |range: std::ops::Range<usize>| given >= range.end && is_finite(range);
+        let colour = |at: usize, default| match known(at..at + 3) {
+            true => DVec3::from_slice(&numbers[at..]),
+            false => default,
+        };
+        let number = |at: usize| if known(at..at + 1) { numbers[at] } else { FILL[at - 4] };
+        let ambient = colour(0, GREY * 0.1) * self.ambient;
+        let (diffuse, specular) = (colour(3, GREY), colour(6, DVec3::ZERO));
+        let (exponent, transparency) = (number(9), number(10));
         let luminance = specular.dot(LUMINANCE).clamp(0.0, 1.0) as f32;
         let material = Material { ambient: ambient.as_vec3(), diffuse: diffuse.as_vec3(), ..Material::neutral() };
         self.set_material(material.shiny(specular.as_vec3(), exponent as f32, luminance), transparency);

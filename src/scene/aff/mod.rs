@@ -19,6 +19,7 @@
 mod camera;
 mod entities;
 mod keys;
+mod loose;
 mod primitives;
 mod spline;
 
@@ -55,6 +56,8 @@ struct AffReader {
     keys: HashMap<Vec<u8>, Keyframes>,
     animation: Option<Animation>,
     view: Option<Viewpoint>,
+    /// The place of the viewpoint for the user.
+    view_place: String,
     ambient: DVec3,
     background: Vec3,
     detail: i64,
@@ -78,6 +81,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
         keys: HashMap::new(),
         animation: None,
         view: None,
+        view_place: String::new(),
         ambient: DVec3::ONE,
         background: Vec3::ZERO,
         detail: 0,
@@ -106,6 +110,10 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
     };
     let (time, offset) = (time.unwrap_or(0.0), reader.mesh.offset());
     let camera = camera::camera(reader.view.as_ref(), keys, reader.animation.as_ref(), time, offset);
+    if camera.is_none() && reader.view.is_some() {
+        let problem = "v: the viewpoint has no direction, because `from` and `at` are the same point: it is ignored";
+        reader.mesh.warnings.add(&format!("{}: {problem}", reader.view_place));
+    }
     Ok(Scene { background: reader.background, camera, ..reader.mesh.finish() })
 }
 

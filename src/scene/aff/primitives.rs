@@ -1,6 +1,6 @@
 //! Reads the primitives, which are converted to triangles.
 
-use super::AffReader;
+use super::{AffReader, loose};
 use crate::scene::mesh_builder::has_direction;
 use crate::scene::text::{Fault, Tokenizer, quote_bytes};
 use glam::DVec3;
@@ -31,11 +31,13 @@ impl AffReader {
         tokens.skip(count, "a primitive")
     }
 
-    /// Reads the parameters of a primitive and adds it to the mesh.
-    pub(super) fn primitive(&mut self, entity: &[u8], tokens: &mut Tokenizer) -> Result<(), Fault> {
+    /// Reads the parameters of a primitive and adds it to the mesh. Returns false if a corner's normal is not finite.
+    pub(super) fn primitive(&mut self, entity: &[u8], tokens: &mut Tokenizer) -> Result<bool, Fault> {
         if !self.building() {
-            return self.skip_primitive(entity, tokens);
+            return self.skip_primitive(entity, tokens).map(|()| true);
         }
+        let is_finite = |normals: &[DVec3]| normals.iter().all(|normal| normal.is_finite());
+        let mut finite = true;
         match entity {
             b"s" => {
                 let [x, y, z, radius] = tokens.any_numbers("s")?;
@@ -57,6 +59,7 @@ impl AffReader {
                 let count = tokens.count(12, "pp")?;
                 let (corners, normals) =
                     read(count, || corner(tokens, "pp"))?.into_iter().unzip::<_, _, Vec<_>, Vec<_>>();
+                finite = is_finite(&normals);
                 self.polygon(&corners, &normals)
             }
             b"tt" | b"ttp" => {
@@ -66,16 +69,18 @@ impl AffReader {
                 for _ in 0..3 {
                     corners.push(vector(tokens, "tt")?);
                     if entity == b"ttp" {
-                        normals.push(vector(tokens, "ttp")?);
+                        normals.push(loose::normal(tokens, "ttp")?);
                     }
                     tokens.skip(2, "tt")?;
                 }
+                finite = is_finite(&normals);
                 self.polygon(&corners, &normals)
             }
             b"tpa" => self.animated_triangle(tokens),
             b"m" => self.mesh(tokens, true),
             _ => self.skip_primitive(entity, tokens),
         }
+        .map(|()| finite)
     }
 
     /// Adds a polygon that shares no vertices with others.
@@ -130,7 +135,10 @@ impl AffReader {
             match tokens.need("m")? {
                 b"normals" => {
                     let count = tokens.count(6, "normals")?;
-                    normals = vectors(count, tokens, "normals", build)?;
+                    normals = match build {
+                        true => read(count, || loose::normal(tokens, "normals"))?,
+                        false => tokens.skip(count * 3, "normals").map(|()| Vec::new())?,
+                    };
                     normal_count = Some(count);
                 }
                 b"texturecoords" => {
@@ -192,7 +200,7 @@ fn vector(tokens: &mut Tokenizer, context: &str) -> Result<DVec3, Fault> {
 }
 
 fn corner(tokens: &mut Tokenizer, context: &str) -> Result<Corner, Fault> {
-    Ok((vector(tokens, context)?, vector(tokens, context)?))
+    Ok((vector(tokens, context)?, loose::normal(tokens, context)?))
 }
 
 /// The indices of the normals of a triangle; `None` if one of them is out of range.

@@ -163,8 +163,9 @@ impl<'a> Buffers<'a> {
         // Some exporters write the path as Windows does.
         let windows = name.contains('\\') && !folder.join(&*name).exists();
         let name = if windows { name.replace('\\', "/").into() } else { name };
-        let leaves = Path::new(&*name).components().any(|c| !matches!(c, Component::Normal(_) | Component::CurDir));
-        let file = folder.join(&*name);
+        let name = without_parents(Path::new(&*name));
+        let leaves = name.components().any(|c| !matches!(c, Component::Normal(_)));
+        let file = folder.join(&name);
         let folders = self.folders.get_or_insert_with(|| SceneFolders::of(self.path));
         if !self.options.outside && (leaves || !folders.contain(&file)) {
             let problem = format!("buffer {label} lies outside of the scene's folder");
@@ -184,6 +185,21 @@ impl<'a> Buffers<'a> {
         self.files.insert(file, content.clone());
         Ok(content)
     }
+}
+
+/// A path without the folders that `..` leaves again, which need not exist.
+fn without_parents(path: &Path) -> PathBuf {
+    let mut whole = PathBuf::new();
+    for component in path.components() {
+        match component {
+            Component::CurDir => {}
+            Component::ParentDir if matches!(whole.components().next_back(), Some(Component::Normal(_))) => {
+                whole.pop();
+            }
+            other => whole.push(other),
+        }
+    }
+    whole
 }
 
 /// Decodes the part of a data URI after `data:`.

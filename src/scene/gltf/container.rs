@@ -98,8 +98,12 @@ pub fn without_nan(text: &str) -> Option<String> {
     (kept > 0).then(|| result + &text[kept..])
 }
 
-/// Refuses versions other than 2.0. `least` is the version that a reader needs at least.
-pub fn check_version(version: Option<&str>, least: Option<&str>) -> Result<(), Fault> {
+/// Checks the version, and returns the warning for a later minor version, which is compatible. `least` is the version
+/// that a reader needs at least.
+///
+/// # Errors
+/// The major version is not 2, or a reader needs more than 2.0.
+pub fn check_version(version: Option<&str>, least: Option<&str>) -> Result<Option<String>, Fault> {
     /// The largest supported minor version of glTF 2.
     const MINOR: u32 = 0;
     const HINT: &str = "export it as glTF 2.0";
@@ -111,15 +115,15 @@ pub fn check_version(version: Option<&str>, least: Option<&str>) -> Result<(), F
     let Some(version) = version else {
         return Err(Fault::new(None, "the JSON is not glTF: it has no asset.version", HINT));
     };
-    if minor(version).is_none() {
+    let Some(later) = minor(version).map(|minor| minor > MINOR) else {
         let problem = format!("this is glTF of version {}, only 2.0 is supported", shown(version, 20));
         return Err(Fault::new(None, problem, HINT));
-    }
+    };
     match least.filter(|least| minor(least).is_none_or(|minor| minor > MINOR)) {
         Some(least) => {
             let problem = format!("the file needs a reader of glTF {}, only 2.0 is supported", shown(least, 20));
             Err(Fault::new(None, problem, HINT))
         }
-        None => Ok(()),
+        None => Ok(later.then(|| format!("glTF of version {}: read as 2.0", shown(version, 20)))),
     }
 }

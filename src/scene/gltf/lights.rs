@@ -12,6 +12,8 @@ use serde::Deserialize;
 pub struct Camera<'a> {
     #[serde(default, borrow)]
     name: Loose<Text<'a>>,
+    #[serde(rename = "type", default, borrow)]
+    kind: Loose<Text<'a>>,
     perspective: Option<Perspective>,
 }
 
@@ -64,7 +66,7 @@ impl GltfReader<'_> {
             }
             camera
         });
-        let Some(Camera { name: own, perspective }) = camera else { return };
+        let Some(Camera { name: own, kind, perspective }) = camera else { return };
         let own = match own {
             Loose::Given(Text(own)) => Some(&**own),
             Loose::Absent | Loose::Malformed => None,
@@ -75,7 +77,10 @@ impl GltfReader<'_> {
                 let field_of_view = lens.yfov;
                 self.add_camera(field_of_view, world);
             }
-            None => self.notes.orthographic = true,
+            None if matches!(kind, Loose::Given(Text(kind)) if kind == "orthographic") => {
+                self.notes.orthographic = true;
+            }
+            None => self.notes.malformed(|| format!("cameras[{index}] has no perspective")),
         }
     }
 
@@ -114,11 +119,17 @@ impl GltfReader<'_> {
         let Some(PunctualLight { kind, color, intensity }) = light else { return Ok(()) };
         self.limits.repeat(4 * size_of::<Light>())?;
         let power = Vec3::from(color.unwrap_or([1.0; 3])) * intensity.unwrap_or(1.0);
-        match kind {
+        let (place, list) = match kind {
             Kind::Directional => {
-                self.lights.directions.push((world.transform_vector3(DVec3::NEG_Z).as_vec3(), power));
+                let direction = world.transform_vector3(DVec3::NEG_Z).normalize_or_zero();
+                (direction.as_vec3(), &mut self.lights.directions)
             }
-            Kind::Point | Kind::Spot => self.lights.points.push((self.place(world, DVec3::ZERO), power)),
+            Kind::Point | Kind::Spot => (self.place(world, DVec3::ZERO), &mut self.lights.points),
+        };
+        if place.is_finite() && power.is_finite() {
+            list.push((place, power));
+        } else {
+            self.notes.malformed(|| format!("nodes[{node}] has a light at {place} of colour {power}, not finite"));
         }
         Ok(())
     }

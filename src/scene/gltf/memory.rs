@@ -2,6 +2,7 @@
 
 use super::accessor::Use;
 use super::extensions;
+use super::json::{Loose, Whole};
 use super::nodes::PlacedMesh;
 use super::reader::GltfReader;
 use super::schema::{Mesh, Mode, Primitive};
@@ -108,7 +109,7 @@ impl<'a> GltfReader<'a> {
 
     /// Checks a primitive's accessors and computes its size.
     fn primitive_size(&mut self, mesh: usize, primitive: &Primitive) -> Result<MeshSize, Fault> {
-        let GltfReader { accessors, limits, .. } = self;
+        let GltfReader { accessors, limits, bad_normals, .. } = self;
         let place = format!("meshes[{mesh}].primitives[{}]", primitive.index);
         let from = format_args!("{place}.attributes.POSITION");
         let positions = accessors.get(primitive.positions, Use::Vectors, from, limits)?;
@@ -121,15 +122,20 @@ impl<'a> GltfReader<'a> {
             None => positions.count,
         };
         let normals = match primitive.normals {
-            Some(index) => accessors.get(index, Use::Normals, format_args!("{place}.attributes.NORMAL"), limits)?.count,
-            None => 0,
+            // Normals that are malformed are dropped where they are read, with a warning.
+            Loose::Given(Whole(index)) if !bad_normals.contains_key(&index) => {
+                let found = accessors.get(index, Use::Normals, format_args!("{place}.attributes.NORMAL"), limits);
+                // A search for the problem in each of many primitives would take time.
+                found.map_err(|fault| bad_normals.insert(index, fault.problem)).ok()
+            }
+            _ => None,
         };
+        let given = normals.is_some_and(|normals| normals.count == positions.count);
         let positions = positions.count;
         let triangles = match primitive.mode {
             Mode::List => corners / 3,
             Mode::Strip | Mode::Fan => corners.saturating_sub(2),
         };
-        let given = primitive.normals.is_some();
         let shines = self.material_of(primitive).is_some_and(|material| self.emission[material] != Vec3::ZERO);
         let vertices = if given { positions } else { triangles.saturating_mul(3) };
         // Morph targets take positions and normals again.
@@ -137,7 +143,7 @@ impl<'a> GltfReader<'a> {
         let temporary = (positions.saturating_mul(copies * size_of::<Vec3>() + size_of::<Option<u32>>()))
             .saturating_add(corners.saturating_mul(size_of::<u32>()))
             .saturating_add(triangles.saturating_mul(size_of::<Triangle>()))
-            .saturating_add(positions.max(normals).saturating_mul(if given { copies * NORMALS_NOW } else { 0 }));
+            .saturating_add(positions.saturating_mul(if given { copies * NORMALS_NOW } else { 0 }));
         let permanent = vertices
             .saturating_mul(size_of::<Vertex>())
             .saturating_add(triangles.saturating_mul(size_of::<Triangle>()))

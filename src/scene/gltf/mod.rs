@@ -81,8 +81,9 @@ fn scene(path: &Path, bytes: &[u8], options: &Options) -> std::result::Result<Sc
         },
         Loose::Absent | Loose::Malformed => None,
     };
-    container::check_version(version(|asset| &asset.version), version(|asset| &asset.min_version))?;
-    let warnings = extensions::check(json, &root)?;
+    let newer = container::check_version(version(|asset| &asset.version), version(|asset| &asset.min_version))?;
+    let mut warnings = extensions::check(json, &root)?;
+    warnings.extend(newer);
     let views = json.list("bufferViews", "buffer view", root.buffer_views)?;
     let buffers = json.list("buffers", "buffer", root.buffers)?;
     let buffers = Buffers::new((path, bytes), options, blob, views, buffers);

@@ -16,6 +16,9 @@ pub struct Notes {
     /// The first malformed material, light or camera, and how many there are.
     malformed: Option<String>,
     malformed_count: usize,
+    /// The first malformed normals or morph weights, and how many there are.
+    surface: Option<String>,
+    surface_count: usize,
 }
 
 impl Notes {
@@ -23,6 +26,12 @@ impl Notes {
     pub fn malformed(&mut self, fault: impl FnOnce() -> String) {
         self.malformed_count += 1;
         self.malformed.get_or_insert_with(fault);
+    }
+
+    /// Notes normals or morph weights that are malformed. Only the first are described.
+    pub fn surface(&mut self, fault: impl FnOnce() -> String) {
+        self.surface_count += 1;
+        self.surface.get_or_insert_with(fault);
     }
 
     /// The warnings; `has_camera` is true if the scene has one.
@@ -37,12 +46,12 @@ impl Notes {
         warn(self.skinned, "skins ignored: meshes are in their rest pose".into());
         warn(repaired > 0, format!("{repaired} normals in the file are zero or not finite: computed instead"));
         warn(dropped > 0, format!("{dropped} triangles dropped: a corner is not finite"));
-        if let Some(first) = &self.malformed {
-            let others = match self.malformed_count - 1 {
-                0 => String::new(),
-                more => format!(" (and {more} more)"),
-            };
-            all.push(format!("material, light or camera ignored: {first}{others}"));
+        for (what, first, count) in [
+            ("material, light or camera", &self.malformed, self.malformed_count),
+            ("normals or morph targets", &self.surface, self.surface_count),
+        ] {
+            let others = if count > 1 { format!(" (and {} more)", count - 1) } else { String::new() };
+            all.extend(first.iter().map(|first| format!("{what} ignored: {first}{others}")));
         }
         all
     }

@@ -44,6 +44,8 @@ pub struct GltfReader<'a> {
     pub(super) limits: Limits,
     /// Name of the requested camera; `None` requests the first.
     pub(super) camera: Option<&'a str>,
+    /// The problems of accessors that cannot be read as normals.
+    pub(super) bad_normals: HashMap<usize, String, RandomState>,
     pub(super) known_cameras: HashMap<usize, Option<Camera<'a>>, RandomState>,
     pub(super) known_lights: HashMap<usize, Option<PunctualLight>, RandomState>,
 }
@@ -72,6 +74,7 @@ impl<'a> GltfReader<'a> {
             notes: Notes::default(),
             limits,
             camera: options.camera.as_deref(),
+            bad_normals: HashMap::default(),
             known_cameras: HashMap::default(),
             known_lights: HashMap::default(),
         }

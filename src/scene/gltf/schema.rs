@@ -160,7 +160,7 @@ pub struct Primitive<'a> {
     pub index: u32,
     /// Accessors.
     pub positions: usize,
-    pub normals: Option<usize>,
+    pub normals: Loose<Whole>,
     pub indices: Option<usize>,
     pub material: Loose<Whole>,
     pub mode: Mode,
@@ -197,8 +197,8 @@ struct AnyPrimitive<'a> {
 pub struct Attributes {
     #[serde(rename = "POSITION")]
     pub positions: Option<Whole>,
-    #[serde(rename = "NORMAL")]
-    pub normals: Option<Whole>,
+    #[serde(default, rename = "NORMAL")]
+    pub normals: Loose<Whole>,
     #[serde(default, rename = "COLOR_0")]
     pub colours: Present,
 }
@@ -246,7 +246,7 @@ impl<'de: 'a, 'a> Deserialize<'de> for Primitives<'a> {
                         (Some(mode), Some(Whole(positions))) => all.surfaces.push(Primitive {
                             index,
                             positions,
-                            normals: normals.map(|Whole(i)| i),
+                            normals,
                             indices: indices.map(|Whole(i)| i),
                             material,
                             mode,

@@ -1,12 +1,14 @@
 //! The triangles of a primitive in the coordinates of its mesh.
 
 use super::accessor::Use;
+use super::json::{Loose, Whole};
 use super::nodes::PlacedMesh;
 use super::reader::GltfReader;
 use super::schema::{Attributes, Mesh, Mode, Primitive};
 use crate::scene::Triangle;
 use crate::scene::text::Fault;
 use glam::Vec3;
+use serde_json::value::RawValue;
 
 /// Bytes of JSON that are parsed again for a node in the time that a byte of memory counts for.
 const BYTES_PER_CHARGE: usize = 4;
@@ -29,15 +31,19 @@ impl<'a> GltfReader<'a> {
         if mesh.primitives.surfaces.iter().all(|primitive| primitive.targets.is_none()) {
             return Ok(Vec::new());
         }
-        let weights: Option<Vec<f32>> = match (place.weights, mesh.weights) {
-            (Some(raw), _) => self.json.value(format_args!("nodes[{}].weights", place.node), raw)?,
-            (None, Some(raw)) => self.json.value(format_args!("meshes[{}].weights", place.mesh), raw)?,
-            (None, None) => None,
-        };
-        let given = place.weights.or(mesh.weights).map_or(0, |raw| raw.get().len());
+        let Some(raw) = place.weights.or(mesh.weights) else { return Ok(Vec::new()) };
         // This bounds the time: many nodes may share a long list.
-        self.limits.keep(given / BYTES_PER_CHARGE)?;
-        Ok(weights.unwrap_or_default())
+        self.limits.keep(raw.get().len() / BYTES_PER_CHARGE)?;
+        let weights = match place.weights {
+            Some(_) => self.json.value::<Option<Vec<f32>>>(format_args!("nodes[{}].weights", place.node), raw),
+            None => self.json.value(format_args!("meshes[{}].weights", place.mesh), raw),
+        };
+        Ok(weights
+            .unwrap_or_else(|fault| {
+                self.notes.surface(|| fault.problem);
+                None
+            })
+            .unwrap_or_default())
     }
 
     /// Reads a primitive. `weights` are those of its morph targets.
@@ -50,26 +56,27 @@ impl<'a> GltfReader<'a> {
     ) -> Result<Shape, Fault> {
         let place = format!("meshes[{mesh}].primitives[{}]", primitive.index);
         let mut positions = self.vectors(primitive.positions, Use::Vectors, &place)?;
-        let mut normals = match primitive.normals {
-            Some(index) => Some(self.vectors(index, Use::Normals, &place)?),
-            None => None,
-        };
-        if normals.as_ref().is_some_and(|normals| normals.len() != positions.len()) {
-            let problem = format!("{place} has different numbers of normals and positions");
-            return Err(Fault::new(None, problem, "export the file again"));
-        }
+        let mut normals = self.normals(primitive, positions.len(), &place);
         if let Some(raw) = primitive.targets.filter(|_| weights.iter().any(|&weight| weight != 0.0)) {
             self.limits.keep(raw.get().len() / BYTES_PER_CHARGE)?;
-            let targets = self.json.list("targets", "morph target", Some(raw))?;
-            for (index, &weight) in weights.iter().enumerate().take(targets.len()).filter(|(_, w)| **w != 0.0) {
-                let target: Attributes = targets.get(index, &place)?;
+            for (index, weight, target) in self.targets(raw, weights, &place) {
                 let place = format!("{place}.targets[{index}]");
                 self.limits.keep(PER_TARGET + size_of_val(positions.as_slice()) / PER_TARGET)?;
                 if let Some(accessor) = target.positions {
                     self.add_weighted(&mut positions, accessor.0, weight, &place)?;
                 }
-                if let (Some(accessor), Some(normals)) = (target.normals, &mut normals) {
-                    self.add_weighted(normals, accessor.0, weight, &place)?;
+                let Some(given) = &mut normals else { continue };
+                let added = match target.normals {
+                    Loose::Absent => Ok(()),
+                    Loose::Malformed => Err(format!("{place}.NORMAL is not an index")),
+                    Loose::Given(Whole(accessor)) => {
+                        self.add_weighted(given, accessor, weight, &place).map_err(|fault| fault.problem)
+                    }
+                };
+                if let Err(problem) = added {
+                    self.notes.surface(|| problem);
+                    // The size of the primitive was computed with normals. Those that are zero are computed.
+                    given.fill(Vec3::ZERO);
                 }
             }
         }
@@ -89,6 +96,46 @@ impl<'a> GltfReader<'a> {
         let mut shape = Shape { positions, normals, triangles };
         self.notes.dropped += shape.drop_not_finite();
         Ok(shape)
+    }
+
+    /// The normals of a primitive; `None` if it has none, or malformed ones, which is noted.
+    fn normals(&mut self, primitive: &Primitive, count: usize, place: &str) -> Option<Vec<Vec3>> {
+        let index = match primitive.normals {
+            Loose::Given(Whole(index)) => index,
+            Loose::Absent => return None,
+            Loose::Malformed => {
+                self.notes.surface(|| format!("{place}.NORMAL is not an index"));
+                return None;
+            }
+        };
+        if let Some(problem) = self.bad_normals.get(&index) {
+            self.notes.surface(|| problem.clone());
+            return None;
+        }
+        let accessor = self.accessors.get(index, Use::Normals, place, &mut self.limits);
+        let Some(accessor) = accessor.ok().filter(|accessor| accessor.count == count) else {
+            self.notes.surface(|| format!("{place} has different numbers of normals and positions"));
+            return None;
+        };
+        Some(self.accessors.vectors(accessor, &mut self.limits).unwrap_or_else(|fault| {
+            self.notes.surface(|| fault.problem);
+            // The size of the primitive was computed with normals. Those that are zero are computed.
+            vec![Vec3::ZERO; count]
+        }))
+    }
+
+    /// The morph targets with a weight other than zero: index, weight and attributes. If one of them is malformed,
+    /// there are none, which is noted.
+    fn targets(&mut self, raw: &'a RawValue, weights: &[f32], place: &str) -> Vec<(usize, f32, Attributes)> {
+        let used = weights.iter().enumerate().filter(|(_, weight)| **weight != 0.0);
+        let found = self.json.list("targets", "morph target", Some(raw)).and_then(|targets| {
+            let used = used.take_while(|(index, _)| *index < targets.len());
+            used.map(|(index, &weight)| Ok((index, weight, targets.get(index, place)?))).collect()
+        });
+        found.unwrap_or_else(|fault: Fault| {
+            self.notes.surface(|| format!("{place}: {}", fault.problem));
+            Vec::new()
+        })
     }
 
     fn vectors(&mut self, index: usize, used: Use, place: &str) -> Result<Vec<Vec3>, Fault> {

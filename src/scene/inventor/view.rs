@@ -19,7 +19,7 @@ impl InventorReader {
     /// Adds a light, if it is on. A light with an error in a field is ignored, and the error added to the faults.
     ///
     /// # Errors
-    /// The lights exceed the memory limit, or a transform moves the light out of range.
+    /// The lights exceed the memory limit.
     pub(super) fn light(&mut self, node: &Node, state: &State) -> Result<(), Fault> {
         let directional = node.kind == NodeType::DirectionalLight;
         let (name, default) = if directional { ("direction", DVec3::NEG_Z) } else { ("location", DVec3::Z) };
@@ -48,7 +48,10 @@ impl InventorReader {
             self.mesh.warnings.add("spot light: shines in all directions");
         }
         self.mesh.set_transform(state.transform);
-        self.mesh.light(place, colour)
+        if let Some(problem) = self.mesh.light(place, colour)? {
+            self.faults.push(Fault::new(Some(node.line), problem, ""));
+        }
+        Ok(())
     }
 
     /// Sets the scene's camera, if this is the first. A camera with an error is ignored, and the error added to the

@@ -206,19 +206,20 @@ impl MeshBuilder {
         }
     }
 
-    /// Adds a point light at a position in local coordinates.
+    /// Adds a point light at a position in local coordinates. A light with a position or colour that is not finite in
+    /// single precision is not added; the result is then the text of a warning.
     ///
     /// # Errors
-    /// Position or colour exceed single precision.
-    pub fn light(&mut self, position: DVec3, colour: DVec3) -> Result<(), Fault> {
+    /// The limit of memory is exceeded.
+    pub fn light(&mut self, position: DVec3, colour: DVec3) -> Result<Option<String>, Fault> {
         let position = (self.transform().transform_point3(position) - self.offset()).as_vec3();
         let colour = colour.as_vec3();
         if !position.is_finite() || !colour.is_finite() {
-            return Err(Fault::new(None, format!("a light at {position} of colour {colour} is not finite"), FINITE));
+            return Ok(Some(format!("a light at {position} of colour {colour} is not finite: the light is ignored")));
         }
         self.limits.repeat(2 * size_of::<Light>())?;
         self.lights.push(Light::new(position, colour));
-        Ok(())
+        Ok(None)
     }
 
     /// Number of triangles so far.

@@ -37,8 +37,9 @@ impl Faces {
     /// # Errors
     /// There is no such vertex.
     #[cold]
-    pub(super) fn odd_corners(&mut self, word: &[u8], lines: &mut Lines) -> Result<(), Fault> {
+    pub(super) fn odd_corners<'a>(&mut self, word: &'a [u8], lines: &mut Lines<'a>) -> Result<(), Fault> {
         let line = lines.line();
+        let word = lines.before_comment(word);
         let mut unusual = word.contains(&b',');
         for piece in word.split(|&b| b == b',').filter(|piece| !piece.is_empty()) {
             let broken = || {
@@ -48,7 +49,7 @@ impl Faces {
             let mut parts = piece.split(|&b| b == b'/');
             let (position, texture, normal) = (parts.next().unwrap_or_default(), parts.next(), parts.next());
             if parts.next().is_some() {
-                return Err(broken());
+                self.problems.surplus.get_or_insert(line);
             }
             let given = odd_index(position, &mut unusual).ok_or_else(broken)?;
             let position = self.odd_position(given, lines.left(), line)?;

@@ -54,7 +54,7 @@ impl<'a> Lines<'a> {
         let rest = self.bytes.get(self.at..).filter(|rest| rest.first().is_some_and(|&b| b > b' ' && b != b'#'))?;
         let mut word = &rest[..number::token_length(rest)];
         if let [kept @ .., b'\\'] = word
-            && matches!(rest.get(word.len()), Some(b'\n' | b'\r'))
+            && ends_line(&rest[word.len()..])
         {
             word = kept;
         }
@@ -86,10 +86,19 @@ impl<'a> Lines<'a> {
         let rest = &self.bytes[self.at..];
         let end = rest.iter().position(|&b| b == b'\n' || b == b'\r').unwrap_or(rest.len());
         self.at += end;
-        match &rest[..end] {
-            [kept @ .., b'\\'] if end < rest.len() => (kept, true),
-            piece => (piece, false),
+        let piece = &rest[..end];
+        match if piece.last() == Some(&b' ') { piece.trim_ascii_end() } else { piece } {
+            [kept @ .., b'\\'] => (kept, true),
+            _ => (piece, false),
         }
+    }
+
+    /// The part of the last word before a comment, with which the next word begins.
+    #[cold]
+    pub fn before_comment(&mut self, word: &'a [u8]) -> &'a [u8] {
+        let length = without_attached_comment(word).len();
+        self.at -= word.len() - length;
+        &word[..length]
     }
 
     /// Skips the rest of the line and its continuation lines. A backslash at the end of a comment does not continue the
@@ -121,7 +130,7 @@ impl<'a> Lines<'a> {
     #[inline]
     fn skip_blanks(&mut self) {
         while let Some(&b) = self.bytes.get(self.at) {
-            if b == b'\\' && matches!(self.bytes.get(self.at + 1), Some(b'\n' | b'\r')) {
+            if b == b'\\' && ends_line(&self.bytes[self.at + 1..]) {
                 self.at += 1;
                 self.skip_line();
             } else if b <= b' ' && b != b'\n' && b != b'\r' {
@@ -157,7 +166,7 @@ impl<'a> Lines<'a> {
     #[cold]
     fn other_float(&mut self, context: &str) -> Result<f32, Fault> {
         let line = self.line;
-        let word = self.word();
+        let word = self.word().map(|word| self.before_comment(word));
         let value = word.and_then(|word| odd::value(word.strip_suffix(b",").unwrap_or(word)));
         match value {
             Some(value) => {
@@ -193,7 +202,7 @@ impl<'a> Lines<'a> {
         let line = self.line;
         let mut words: Vec<&[u8]> = Vec::new();
         while let Some(word) = self.word() {
-            words.push(word);
+            words.push(self.before_comment(word));
             if words.len() == MANY_WORDS {
                 break;
             }
@@ -300,6 +309,22 @@ const MANY_WORDS: usize = 16;
 
 fn is_number(word: &[u8]) -> bool {
     number::double(word).is_some_and(|(_, length)| length == word.len())
+}
+
+/// True if only blanks are left in the line.
+#[cold]
+fn ends_line(bytes: &[u8]) -> bool {
+    bytes.iter().find(|&&b| b > b' ' || b == b'\n' || b == b'\r').is_none_or(|&b| b <= b' ')
+}
+
+/// A word without the comment that follows it directly, as in `3#c`. A `#` of a number that is none (`-1.#IND`) begins
+/// no comment.
+fn without_attached_comment(word: &[u8]) -> &[u8] {
+    let begins = |&at: &usize| {
+        let digits = |end: usize| word[..end].iter().rposition(|b| !b.is_ascii_digit()).map_or(0, |before| before + 1);
+        word[at] == b'#' && at.checked_sub(1).is_none_or(|end| odd::after_hash(&word[digits(end)..]).is_none())
+    };
+    (0..word.len()).find(begins).map_or(word, |at| &word[..at])
 }
 
 /// A name without the comment after it.

@@ -173,7 +173,7 @@ impl<'a> ObjReader<'a> {
             }
             b"vt" | b"vp" | b"g" | b"o" => Ok(()),
             b"s" => {
-                let word = lines.word().unwrap_or_default();
+                let word = lines.word().map(|word| lines.before_comment(word)).unwrap_or_default();
                 self.faces.set_smoothing(if word == b"off" { Smoothing::Flat } else { Smoothing::group(word) });
                 Ok(())
             }

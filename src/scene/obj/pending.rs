@@ -30,6 +30,8 @@ pub struct Problems {
     forward: bool,
     /// The first line with a texture coordinate that is not an index.
     pub texture: Option<usize>,
+    /// The first line with a corner of more than three parts.
+    pub surplus: Option<usize>,
     /// The first line of a normal that is not three finite numbers.
     pub normal: Option<usize>,
     /// Number of corners with a normal that cannot exist, and the line of the first.
@@ -81,6 +83,9 @@ impl Problems {
     pub fn warnings(&self, path: &Path, normals: usize, unusual: Option<usize>) -> Vec<String> {
         let mut warnings: Vec<String> = self.not_finite.warning().into_iter().collect();
         let mut warn = |line: usize, text: &str| warnings.push(format!("{}: {text}", place(path, line)));
+        if let Some(line) = self.surplus {
+            warn(line, "a corner of a face has more parts than v/vt/vn: the others are ignored");
+        }
         if let Some(line) = self.normal {
             warn(line, "a normal is not three finite numbers: such normals are computed");
         }

@@ -103,6 +103,9 @@ fn all_kinds_of_files_and_buffers_are_read() {
     for uri in [
         "b.bin",
         "./sub/b.bin",
+        "missing/../b.bin",
+        "sub/../b.bin",
+        "sub/deep/../b.bin",
         "my%20file.bin",
         &format!("data:application/octet-stream;base64,{data}"),
         &format!("data:;base64,{}", data.trim_end_matches('=')),
@@ -113,6 +116,7 @@ fn all_kinds_of_files_and_buffers_are_read() {
         ("c.bin", "buffer c.bin cannot be read: no such file"),
         ("sub", "buffer sub cannot be read: not a regular file"),
         ("../b.bin", "outside=yes"),
+        ("sub/../../b.bin", "outside=yes"),
         ("%2e%2e/b.bin", "outside=yes"),
         ("/etc/passwd", "outside=yes"),
         ("https://example.org/b.bin", "is a web address"),
@@ -217,9 +221,9 @@ fn missing_normals_give_flat_shading_and_sparse_values_replace_elements() {
     let repaired = load(&zero);
     assert!(repaired.warnings[0].starts_with("2 normals"), "{:?}", repaired.warnings);
     zero["accessors"][1]["count"] = json!(1_000_000_000);
-    assert!(refusal(try_load(&zero)).contains("more elements than the file can fill"));
+    assert!(load(&zero).warnings[0].contains("more elements than the file can fill"));
     zero["accessors"][1]["count"] = json!(2);
-    assert!(refusal(try_load(&zero)).contains("replaces an element beyond its end"));
+    assert!(load(&zero).warnings[0].contains("different numbers of normals and positions"));
 }
 
 #[test]
@@ -306,8 +310,6 @@ fn invalid_files_are_refused() {
         (("/bufferViews/0/byteStride", json!(4)), "accessor 0 reaches beyond its buffer view"),
         (("/accessors/0/count", json!(1_000_000_000_000u64)), "accessor 0 reaches beyond its buffer view"),
         (("/accessors/0/byteOffset", json!(u64::MAX)), "accessor 0 reaches beyond its buffer view"),
-        (("/accessors/1/count", json!(2)), "different numbers of normals and positions"),
-        (("/accessors/1/componentType", json!(5123)), "accessor 1 must have three floats"),
         (("/accessors/0/type", json!("VEC2")), "accessor 0 must have three floats"),
         (("/accessors/2/componentType", json!(5126)), "accessor 2 must hold unsigned integers"),
         (("/accessors/2/type", json!("VEC3")), "accessor 2 must have one index"),
@@ -354,7 +356,10 @@ fn other_versions_and_compression_are_reported_first() {
             document["asset"]["minVersion"] = json!(least);
         }
         match try_load(&document) {
-            Ok(_) => assert!(read, "{version} {least:?}"),
+            Ok(scene) => {
+                let warned = scene.warnings.iter().any(|w| w.contains(&format!("glTF of version {version}")));
+                assert!(read && warned == (version != "2.0"), "{version} {least:?}: {:?}", scene.warnings);
+            }
             Err(error) => assert!(!read && error.to_string().contains("only 2.0 is supported"), "{version}: {error}"),
         }
     }

@@ -426,3 +426,48 @@ fn faults_have_their_place_and_line() {
     let glb = glb(&with(&[("/nodes/0/mesh", json!("x"))]), &bytes());
     assert!(refusal(gltf::read_bytes(Path::new("a.glb"), &glb, &Options::default())).starts_with("a.glb: nodes[0]"));
 }
+
+#[test]
+fn malformed_normals_are_computed() {
+    let mut reference = document();
+    reference["meshes"][0]["primitives"][0]["attributes"].as_object_mut().unwrap().remove("NORMAL");
+    for (place, value, words) in [
+        ("/meshes/0/primitives/0/attributes/NORMAL", json!(77), "NORMAL names accessor 77, which does not exist"),
+        ("/meshes/0/primitives/0/attributes/NORMAL", json!("x"), "meshes[0].primitives[0].NORMAL is not an index"),
+        ("/accessors/1/count", json!(2), "has different numbers of normals and positions"),
+        ("/accessors/1/type", json!("VEC4"), "accessor 1 must have three floats"),
+        ("/accessors/1/componentType", json!(5121), "accessor 1 must have three floats"),
+        ("/accessors/1/count", json!(1_000_000), "accessor 1 reaches beyond its buffer view"),
+        ("/accessors/1/componentType", json!("x"), "accessors[1].componentType"),
+    ] {
+        let wrong = with(&[(place, value)]);
+        let warnings = warnings(&wrong, words);
+        assert!(warnings.len() == 1 && warnings[0].starts_with("normals or morph targets ignored"), "{warnings:?}");
+        assert!(warnings[0].contains(words), "{warnings:?}");
+        assert_eq!(load(&wrong).content_hash(), load(&reference).content_hash(), "{words}");
+    }
+}
+
+#[test]
+fn lights_and_cameras_that_are_not_usable_are_named() {
+    for (light, translation, words) in [
+        (json!({ "type": "point" }), json!([0.0, 0.0, 1e39]), "nodes[1] has a light at [0, 0, inf]"),
+        (json!({ "type": "point", "intensity": 1e39 }), json!([0, 0, 9]), "lights[0].intensity: number out of range"),
+    ] {
+        let scene = with(&[
+            (
+                "/nodes/-",
+                json!({ "translation": translation, "extensions": { "KHR_lights_punctual": { "light": 0 } } }),
+            ),
+            ("/scenes/0/nodes", json!([0, 1])),
+            ("/extensions", json!({ "KHR_lights_punctual": { "lights": [light] } })),
+        ]);
+        let warnings = warnings(&scene, words);
+        assert!(warnings.iter().any(|warning| warning.contains(words)), "{words}: {warnings:?}");
+    }
+    for (kind, words) in [("perspective", "cameras[0] has no perspective"), ("orthographic", "orthographic camera")] {
+        let scene = with(&[("/cameras", json!([{ "type": kind }])), ("/nodes/0/camera", json!(0))]);
+        let warnings = warnings(&scene, words);
+        assert!(warnings.len() == 1 && warnings[0].contains(words), "{kind}: {warnings:?}");
+    }
+}

@@ -144,15 +144,47 @@ fn fills_lights_and_views_with_errors_have_their_defaults() {
         ("am 1 1 -nan(ind)", "am: the colour is not finite"),
         ("l nan 0 0", "l: the light's position is not finite"),
         ("l 1 1 1 nan 0 0", "l: the colour is not finite"),
+        ("l foo 0 0", "a.nff:1: l: 0 numbers instead of 3: the light is ignored"),
+        ("l 1 2", "a.nff:1: l: 2 numbers instead of 3"),
+        ("l 1 2 3 0.5", "a.nff:1: l: a colour of 1 numbers instead of 3"),
+        ("l 0 0 1e39", "a.nff:1: l: a light at [0, 0, inf]"),
+        ("l 0 0 5 1e39 1 1", "a.nff:1: l: a light at [0, 0, 5] of colour [inf, 1, 1] is not finite"),
+        ("l 1e999 0 0", "the light is ignored"),
+        ("b foo 0 0", "a.nff:1: b: 0 numbers instead of 3"),
+        ("b 1", "a.nff:1: b: 1 numbers instead of 3"),
+        ("b 1e39 0 0", "b: the colour is not finite"),
+        ("b 1 0 0 7", "a.nff:1: b: `7` and what follows in the line is ignored"),
+        ("f red", "a.nff:1: f: 0 numbers instead of 8"),
+        ("f 1 0 0 1 0 1 0 1 .5", "a.nff:1: f: `.5` and what follows in the line is ignored"),
+        ("f 1 0 0 1 0 1 0 1 tex", "texture ignored"),
+        ("fm 1 1 1", "a.nff:1: fm: 3 numbers instead of 12"),
+        ("fm red", "a.nff:1: fm: 0 numbers instead of 12"),
+        ("am", "am: 0 numbers instead of 3"),
+        ("v\nfrom foo 0 0\nat 0 0 0", "a.nff:2: v: from: it is not 3 numbers: the viewpoint is ignored"),
+        ("v\nfrom 0 0 5\nresolution nan x", "a.nff:3: v: resolution: it is not 2 numbers"),
+        ("v\nfrom 0 0 5\nangle 0", "a.nff:3: v: the field of view of 0 degrees is not between 0 and 180"),
+        ("v\nfrom 0 0 5\nangle 180", "the field of view of 180 degrees"),
+        ("v\nfrom 0 0 5\nangle 200", "the field of view of 200 degrees"),
+        ("v\nfrom 0 0 5 6\nangle 40", "a.nff:2: v: from: it is not 3 numbers"),
+        ("v\nfrom 1 1 5\nat 1 1 5", "a.nff:1: v: the viewpoint has no direction"),
         ("v from nan 0 5 at 0 0 0 up 0 1 0 angle 40 hither 1 resolution 64 64", "v: the viewpoint is not finite"),
         ("v from 0 0 5 at 0 0 0 up 0 1 0 angle -1.#IND hither 1 resolution 64 64", "v: the viewpoint is not finite"),
     ] {
         let scene = nff(&format!("{line}\n{triangle}"));
         is_box(line, &scene, 1, TRIANGLE);
         warns(line, &scene, warning);
+        assert!(scene.warnings.len() == 1 && scene.camera.is_none(), "{line}: {:?}", scene.warnings);
     }
     let red = nff(&format!("f 1 0 0\n{triangle}"));
     assert_eq!(red.materials[red.triangles[0].material as usize].diffuse, Vec3::X);
+    let text = "pp 3\n0 0 0 foo bar baz\n2 0 0 0 0 1\n0 3 0 0 0 1\n";
+    let scene = nff(text);
+    is_box(text, &scene, 1, TRIANGLE);
+    warns(text, &scene, "a normal is not three finite numbers");
+    assert!(scene.vertices.iter().all(|vertex| vertex.normal == Vec3::Z), "{:?}", scene.vertices);
+    // Several entities in a line
+    let scene = nff("l foo b 1 p 3 0 0 0 2 0 0 0 3 0 f 1 s 0 0 0 1\n");
+    assert!(scene.triangles.len() > 1 && scene.warnings.len() == 3, "{:?}", scene.warnings);
     // Over several lines, and with a texture
     for line in ["f 1 0 0\n.8 .2\n20 0 1", "f 1 0 0 .8 .2 20 0 1 wood.jpg", "v hither nan from 0 0 5 at 0 0 0 angle 40"]
     {

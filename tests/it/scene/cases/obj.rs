@@ -206,6 +206,33 @@ fn faces_with_vertices_that_are_not_finite_are_dropped_and_counted() {
 }
 
 #[test]
+fn comments_may_follow_a_number_directly_and_backslashes_end_the_file() {
+    for text in [
+        "v 0 0 0#a\nv 2 0 0# b\nv 0 3 0#\nf 1 2 3#c",
+        "v 0 0 0#a\\\nv 2 0 0\nv 0 3 0\nf 1 2 3#c\\",
+        "v 0 0 0\nv 2 0 0\nv 0 3 0\nvn 0 0 1#n\nf 1//1 2//1 3//1#c 4",
+        "v 0 0 0\nv 2 0 0\nv 0 3 0\nf 1 2 3\\",
+        "v 0 0 0\nv 2 0 0\nv 0 3 0\nf 1 2 3 \\",
+        "v 0 0 0\nv 2 0 0\nv 0 3 0\nf 1 2 \\  \n3\n",
+        "v 0 0 0\nv 2 \\ \t\r\n0 0\nv 0 3\\ \n0\ns 1#x\nf 1 2\\ \n3\n",
+    ] {
+        let scene = obj(text);
+        is_box(text, &scene, 1, TRIANGLE);
+        assert!(scene.warnings.is_empty(), "{text}: {:?}", scene.warnings);
+    }
+    let text = "v 0 0 0\nv 2 0 0\nv 0 3 0\nf 1/1/1/1 2/1/1/1 3/1/1/1\nvn 0 0 1\n";
+    let scene = obj(text);
+    is_box(text, &scene, 1, TRIANGLE);
+    warns(text, &scene, "a.obj:4: a corner of a face has more parts than v/vt/vn");
+    // A `#` of a number that is none begins no comment.
+    let scene = obj(&format!("{POINTS}v 1.#IND -1.#QNAN 0\nf 1 2 3\nf 1 2 5\n"));
+    warns("1.#IND", &scene, "1 vertices are not finite");
+    let red = with_library("b.mtl", "b.mtl", b"newmtl red\nKd 1 0 0#c\nNs 10#c\n");
+    assert_eq!(red.materials[red.triangles[0].material as usize].diffuse, Vec3::X);
+    assert!(red.warnings.is_empty(), "{:?}", red.warnings);
+}
+
+#[test]
 fn numbers_in_unusual_notations_are_read() {
     for text in [
         "v 0, 0, 0\nv 2, 0, 0\nv 0, 3, 0\nf 1 2 3",
