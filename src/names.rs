@@ -32,7 +32,7 @@ pub fn text(name: &OsStr) -> String {
     text
 }
 
-/// The path that a text from [`text`] stands for. On systems whose file names are not bytes, escapes of bytes are kept
+/// The path of a text that [`text`] made. On systems whose file names are not bytes, escapes of bytes are kept
 /// as they are.
 pub fn file(text: &str) -> PathBuf {
     let bytes = text.as_bytes();

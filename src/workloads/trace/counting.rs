@@ -21,7 +21,7 @@ pub struct Counted {
 }
 
 impl Counted {
-    /// What is odd about the frames: a camera that looks past the scene, or stands in a surface.
+    /// What is odd about the frames: a camera that looks past the scene, or is inside of a surface.
     pub fn warnings(&self, frames: usize) -> Vec<String> {
         let what = "no primary ray hits the scene";
         let near = "every primary ray hits a surface directly at the camera";
