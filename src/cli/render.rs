@@ -68,6 +68,8 @@ enum Heatmap {
     Tests,
     /// Restarts of the kd-tree's traversal
     Restarts,
+    /// Ropes followed from leaf to leaf
+    Ropes,
 }
 
 impl Heatmap {
@@ -76,6 +78,7 @@ impl Heatmap {
             Heatmap::Steps => counters.steps(),
             Heatmap::Tests => counters.tests,
             Heatmap::Restarts => counters.restarts,
+            Heatmap::Ropes => counters.ropes,
         }
     }
 
@@ -84,6 +87,7 @@ impl Heatmap {
             Heatmap::Steps => "steps",
             Heatmap::Tests => "triangle tests",
             Heatmap::Restarts => "restarts",
+            Heatmap::Ropes => "ropes",
         }
     }
 }

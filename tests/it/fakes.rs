@@ -58,7 +58,7 @@ pub fn structure(name: &str) -> StructureRecord {
         variant: "default".into(),
         build_ms: 1.25,
         build_threads: 1,
-        memory: Memory { structure_bytes: 100, geometry_bytes: 200, thesis_bytes: 300 },
+        memory: Memory { structure_bytes: 100, geometry_bytes: 200, thesis_bytes: 300, rt2_bytes: 400 },
         ..StructureRecord::default()
     };
     (record.properties.cells_x, record.properties.references_per_triangle) = (Some(3), Some(1.5));
@@ -80,11 +80,19 @@ pub fn configuration(name: &str, config: Config) -> ConfigurationRecord {
         verified: true,
         image_hash: Some("123".into()),
         counters: Some([
-            CounterSums { rays: 100, inner: 600, leaves: 150, tests: 10, pops: 1, restarts: 0 },
-            CounterSums { rays: 50, inner: 1, leaves: 1, tests: 100, pops: 0, restarts: 0 },
+            CounterSums {
+                rays: 100,
+                inner: 600,
+                leaves: 150,
+                tests: 10,
+                pops: 1,
+                restarts: 0,
+                ..CounterSums::default()
+            },
+            CounterSums { rays: 50, inner: 1, leaves: 1, tests: 100, pops: 0, restarts: 0, ..CounterSums::default() },
             CounterSums::default(),
         ]),
-        memory: Memory { structure_bytes: 100, geometry_bytes: 200, thesis_bytes: 300 },
+        memory: Memory { structure_bytes: 100, geometry_bytes: 200, thesis_bytes: 300, rt2_bytes: 400 },
         build_ms: 1.25,
         build_threads: 1,
         timing_source: Some(TimingSource::Device),

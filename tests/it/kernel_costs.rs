@@ -2,7 +2,7 @@
 
 use rtbench::device::vulkan::KernelCost;
 use rtbench::device::{Constants, KernelFile, Source, assemble};
-use rtbench::workloads::trace::algorithms;
+use rtbench::workloads::trace::{Selection, algorithms};
 use rtbench::workloads::trace::gpu::kernels;
 use rtbench::workloads::{self, kernel_costs};
 use std::collections::BTreeSet;
@@ -126,7 +126,7 @@ fn no_registered_algorithm_and_no_kernel_file_is_left_out() {
     let files: BTreeSet<&str> =
         kernels.values().flat_map(|source| source.lines.iter().map(|(file, _)| *file)).collect();
     for algorithm in algorithms() {
-        let kernel = algorithm.traversal.kernel;
+        let kernel = Selection::parse(algorithm.name).unwrap().method().traversal.kernel;
         assert!(files.contains(kernel), "{kernel} of {} is in no kernel of the list", algorithm.name);
     }
     // Files that only options or other devices choose

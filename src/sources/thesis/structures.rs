@@ -1,6 +1,6 @@
 //! What is known of the structures that the thesis has or is compared with, by name.
 
-use crate::workloads::trace::algorithms;
+use crate::workloads::trace::{Selection, algorithms};
 
 /// The structures of the thesis, in its order.
 pub const STRUCTURES: [&str; 3] = [GRID, KDTREE, BVH];
@@ -83,8 +83,9 @@ pub fn family(name: &str) -> &str {
 
 /// What a step of a ray is, by the structure's registration; one that is not registered any more is taken for a tree.
 pub fn step(name: &str) -> Step {
-    let registered = algorithms().iter().find(|algorithm| algorithm.name == name);
-    let has_cells = registered.is_some_and(|algorithm| algorithm.traversal.structure.has_cells);
+    let registered = algorithms().iter().any(|algorithm| algorithm.name == name);
+    let selection = registered.then(|| Selection::parse(name).ok()).flatten();
+    let has_cells = selection.is_some_and(|selection| selection.method().traversal.structure.has_cells);
     if has_cells { Step::Cell } else { Step::Node }
 }
 

@@ -23,8 +23,8 @@ pub struct Algorithm {
     pub paper: &'static str,
     /// What builds the structure.
     pub builder: &'static Builder,
-    /// What walks it.
-    pub traversal: &'static Traversal,
+    /// What walks it, which options may decide.
+    pub traversal: fn(&Selection) -> &'static Traversal,
     /// What can be set about the traversal.
     pub options: &'static [OptionInfo],
 }
@@ -37,6 +37,9 @@ pub struct Builder {
     pub options: &'static [OptionInfo],
     /// False if it uses only one thread.
     pub parallel: bool,
+    /// What it builds for a traversal that needs more than others, such as ropes: selections that differ in it share no
+    /// structure. Empty for all others.
+    pub purpose: fn(&Selection) -> &'static str,
     /// Builds it.
     pub build: fn(&Selection, &Scene) -> Result<Made>,
     /// Estimates its memory before it is built, where that is possible.

@@ -12,7 +12,7 @@ use std::path::Path;
 pub type Row<'a> = (&'a Artifact, &'a Input);
 
 /// Columns of `structures.csv`: empty where one has no meaning for a structure.
-const COLUMNS: [&str; 22] = [
+const COLUMNS: [&str; 23] = [
     "scene",
     "structure",
     "variant",
@@ -32,6 +32,7 @@ const COLUMNS: [&str; 22] = [
     "structure_bytes",
     "geometry_bytes",
     "thesis_bytes",
+    "rt2_bytes",
     "triangles",
     "vertices",
     "note",

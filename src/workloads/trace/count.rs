@@ -18,6 +18,7 @@ macro_rules! counters {
 
         /// Counters of one ray type, summed over a path.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+        #[serde(default)] // a counter that a record does not have yet is 0
         pub struct CounterSums {
             $($(#[doc = $meaning])+ pub $field: u64,)+
         }
@@ -117,4 +118,10 @@ counters! {
     pop: pops,
     /// A restart at (or below) the root.
     restart: restarts,
+    /// A rope is followed from a leaf to its neighbour.
+    rope: ropes,
+    /// A search by ropes is given up and begun again with a stack.
+    fallback: fallbacks,
+    /// A visit of an inner node of a BIH that enters neither child.
+    skip: skips,
 }

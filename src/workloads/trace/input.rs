@@ -222,7 +222,8 @@ pub fn scene_record(scene: &Scene) -> SceneRecord {
 pub fn memory(built: &Built, scene: &Scene, allocated: Option<(u64, u64)>) -> Memory {
     let held = || (scene.geometry_bytes(), built.structure.structure_bytes());
     let (geometry_bytes, structure_bytes) = allocated.unwrap_or_else(held);
-    Memory { structure_bytes, geometry_bytes, thesis_bytes: built.structure.thesis_bytes(scene) }
+    let (thesis_bytes, rt2_bytes) = (built.structure.thesis_bytes(scene), built.structure.rt2_bytes());
+    Memory { structure_bytes, geometry_bytes, thesis_bytes, rt2_bytes }
 }
 
 /// What was built, for records.

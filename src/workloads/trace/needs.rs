@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 pub fn of(cases: &[Case], library: &Library) -> Vec<String> {
     let parsed: Vec<TraceCase> = cases.iter().filter_map(|case| TraceCase::parse(case).ok()).collect();
     let mut needs = Vec::new();
-    let features = parsed.iter().map(|case| case.selection.info().traversal.needs);
+    let features = parsed.iter().map(|case| case.selection.method().traversal.needs);
     let features: Features = features.flat_map(|features| features.iter().collect::<Vec<_>>()).collect();
     if !features.is_empty() {
         let names: Vec<String> = features.iter().map(|feature| format!("{feature:?}")).collect();

@@ -72,7 +72,7 @@ impl<'a> TraceRun<'a> {
         let context = self.input.context;
         context.check_interrupt()?;
         let view = &self.input.path(case)?.views[frame];
-        let has_twin = self.selection.info().traversal.twin.is_some();
+        let has_twin = self.selection.method().traversal.twin.is_some();
         let twin = (size == SMALL && has_twin).then_some(&*self.built.structure);
         let mut verifier = self.input.verifier.borrow_mut();
         let tracer = self.tracer.as_mut();

@@ -152,7 +152,7 @@ impl Selection {
             let side = |text: &str| text.parse().expect("the table lists shapes");
             Group { width: side(width), height: side(height) }
         });
-        let traversal = self.info().traversal;
+        let traversal = (self.info().traversal)(self);
         Method {
             traversal,
             parameters: (traversal.parameters)(self),
@@ -179,7 +179,7 @@ impl Selection {
     /// Equal for selections whose built structures are the same.
     pub fn build_key(&self) -> String {
         let builder = self.info().builder;
-        format!("{}:{}", builder.name, self.values[..builder.options.len()].join(","))
+        format!("{}:{}:{}", builder.name, (builder.purpose)(self), self.values[..builder.options.len()].join(","))
     }
 
     /// Builds the structure on `threads` threads (0: as many as there are).

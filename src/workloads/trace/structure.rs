@@ -77,6 +77,11 @@ pub trait Structure: Debug + Send + Sync + 'static {
         0
     }
 
+    /// Bytes by the memory model of the source `rt2`, without geometry; 0 for a structure that it does not describe.
+    fn rt2_bytes(&self) -> u64 {
+        0
+    }
+
     /// Checks every invariant of its own. Bounds and triangle references have been checked before.
     ///
     /// # Errors

@@ -16,6 +16,7 @@ static BUILDER: Builder = Builder {
     name: "brute",
     options: &[],
     parallel: true,
+    purpose: |_| "",
     build: |_, scene| Ok(Made::of(build::build(scene)?)),
     estimate: None,
 };

@@ -14,7 +14,7 @@ pub static BRUTE: Algorithm = Algorithm {
     summary: "no structure: every ray against every triangle (ground truth for small scenes)",
     paper: "",
     builder: &BUILDER,
-    traversal: &SCAN,
+    traversal: |_| &SCAN,
     options: &[GROUP],
 };
 

@@ -4,7 +4,7 @@ use super::{KIND, check};
 use crate::math::Aabb;
 use crate::scene::Scene;
 use crate::workloads::trace::common::check::{Expected, Verdict};
-use crate::workloads::trace::common::memory;
+use crate::workloads::trace::common::memory::{self, rt2};
 use crate::workloads::trace::common::properties::Leaves;
 use crate::workloads::trace::common::sah::CostModel;
 use crate::workloads::trace::{Properties, Structure, StructureKind, TriangleRef};
@@ -118,6 +118,11 @@ impl Structure for Bvh {
 
     fn thesis_bytes(&self, scene: &Scene) -> u64 {
         memory::bvh_bytes(self.nodes.len() as u64, scene.vertices.len() as u64)
+    }
+
+    fn rt2_bytes(&self) -> u64 {
+        // Without the root's dummy sibling
+        rt2::bvh_bytes(self.nodes.len() as u64 - 1)
     }
 
     fn check(&self, expected: &Expected) -> Verdict {

@@ -26,12 +26,18 @@ use std::sync::Arc;
 static KIND: StructureKind = StructureKind { name: "BVH", node_texel: Texel::Bytes16, has_cells: false };
 
 /// Binned SAH, top down.
-static BINNED: Builder =
-    Builder { name: "bvh", options: OPTIONS, parallel: true, build: build_binned, estimate: Some(estimate) };
+static BINNED: Builder = Builder {
+    name: "bvh",
+    options: OPTIONS,
+    parallel: true,
+    purpose: |_| "",
+    build: build_binned,
+    estimate: Some(estimate),
+};
 
 /// PLOC with reinsertion, by obvhs.
 static PLOC: Builder =
-    Builder { name: "ploc", options: PLOC_OPTIONS, parallel: true, build: build_ploc, estimate: None };
+    Builder { name: "ploc", options: PLOC_OPTIONS, parallel: true, purpose: |_| "", build: build_ploc, estimate: None };
 
 const OPTIONS: &[OptionInfo] = &[
     OptionInfo::new(Axis::Build, "bins", "16", "bins per axis", Kind::Count(2, 32)),

@@ -18,7 +18,7 @@ pub static BVH: Algorithm = Algorithm {
     summary: "binned SAH BVH, packets of 8x8 rays with one shared stack (also: bvh-packet)",
     paper: "Günther et al. 2007",
     builder: &BINNED,
-    traversal: &SHARED_STACK,
+    traversal: |_| &SHARED_STACK,
     options: &[VOTE, PACKET],
 };
 

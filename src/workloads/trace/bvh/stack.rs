@@ -14,7 +14,7 @@ pub static BVH_STACK: Algorithm = Algorithm {
     summary: "the same BVH, one ray per thread with a stack of its own",
     paper: "Aila and Laine 2009",
     builder: &BINNED,
-    traversal: &STACK,
+    traversal: |_| &STACK,
     options: &[GROUP],
 };
 
@@ -25,7 +25,7 @@ pub static PLOC_STACK: Algorithm = Algorithm {
     summary: "BVH built by obvhs (PLOC with reinsertion; as bvh where that takes too long), a stack per ray",
     paper: "Meister and Bittner 2018",
     builder: &PLOC,
-    traversal: &STACK,
+    traversal: |_| &STACK,
     options: &[GROUP],
 };
 

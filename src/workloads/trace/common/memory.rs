@@ -22,3 +22,28 @@ pub fn kdtree_bytes(nodes: u64, triangle_refs: u64, vertices: u64) -> u64 {
 pub fn bvh_bytes(nodes: u64, vertices: u64) -> u64 {
     40 * nodes + VERTEX * vertices
 }
+
+/// The memory model of the source `rt2` (a thesis of 2010 that prints no sizes), geometry left out. What is known of
+/// it: a BVH node takes three rows of 16 bytes and carries its triangles, a leaf with ropes has a box and six links.
+/// A kd-tree node of 8 bytes and triangle numbers of 4 are the field's.
+pub mod rt2 {
+    /// Bytes of a kd-tree without ropes.
+    pub fn kdtree_bytes(leaves: u64, triangle_refs: u64) -> u64 {
+        8 * (2 * leaves).saturating_sub(1) + 4 * triangle_refs
+    }
+
+    /// Bytes that ropes add: a box and six links for each leaf.
+    pub fn ropes_bytes(leaves: u64) -> u64 {
+        48 * leaves
+    }
+
+    /// Bytes of a BVH, whose nodes carry the triangle numbers of leaves.
+    pub fn bvh_bytes(nodes: u64) -> u64 {
+        48 * nodes
+    }
+
+    /// Bytes of a bounding interval hierarchy: two planes and a word for a node.
+    pub fn bih_bytes(nodes: u64, triangle_refs: u64) -> u64 {
+        12 * nodes + 4 * triangle_refs
+    }
+}

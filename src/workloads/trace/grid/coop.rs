@@ -18,7 +18,7 @@ pub static GRID_COOP: Algorithm = Algorithm {
     summary: "the same grid; the 64 threads of a group share out all triangle tests of the group",
     paper: "",
     builder: &BUILDER,
-    traversal: &COOP,
+    traversal: |_| &COOP,
     options: &[PACKET],
 };
 

@@ -19,7 +19,7 @@ pub static GRID: Algorithm = Algorithm {
     summary: "uniform grid, walked by a 3D-DDA",
     paper: "Fujimoto et al. 1986; Amanatides and Woo 1987",
     builder: &BUILDER,
-    traversal: &DDA,
+    traversal: |_| &DDA,
     options: &[GROUP],
 };
 

@@ -23,6 +23,7 @@ static BUILDER: Builder = Builder {
     name: "grid",
     options: OPTIONS,
     parallel: false,
+    purpose: |_| "",
     build: |selection, scene| Ok(Made::of(build::build(scene, &config(selection))?)),
     estimate: Some(|selection, scene| estimate::estimate(scene, &config(selection))),
 };

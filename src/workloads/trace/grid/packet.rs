@@ -20,7 +20,7 @@ pub static GRID_PACKET: Algorithm = Algorithm {
     summary: "the same grid; packets march through it slice by slice along their major axis",
     paper: "Wald et al. 2006",
     builder: &BUILDER,
-    traversal: &SLICES,
+    traversal: |_| &SLICES,
     options: &[PACKET],
 };
 

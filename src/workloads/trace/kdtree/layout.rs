@@ -4,7 +4,7 @@ use super::{KIND, check};
 use crate::math::Aabb;
 use crate::scene::Scene;
 use crate::workloads::trace::common::check::{Expected, Verdict};
-use crate::workloads::trace::common::memory;
+use crate::workloads::trace::common::memory::{self, rt2};
 use crate::workloads::trace::common::properties::Leaves;
 use crate::workloads::trace::common::sah::CostModel;
 use crate::workloads::trace::structure::finite;
@@ -112,6 +112,11 @@ impl Structure for KdTree {
     fn thesis_bytes(&self, scene: &Scene) -> u64 {
         let (nodes, vertices) = (self.nodes.len() as u64, scene.vertices.len() as u64);
         memory::kdtree_bytes(nodes, self.triangle_refs.len() as u64, vertices)
+    }
+
+    fn rt2_bytes(&self) -> u64 {
+        let leaves = self.nodes.iter().filter(|node| node.is_leaf()).count();
+        rt2::kdtree_bytes(leaves as u64, self.triangle_refs.len() as u64)
     }
 
     fn check(&self, expected: &Expected) -> Verdict {

@@ -23,8 +23,14 @@ use std::sync::Arc;
 
 static KIND: StructureKind = StructureKind { name: "kd-tree", node_texel: Texel::Bytes8, has_cells: false };
 
-static BUILDER: Builder =
-    Builder { name: "kdtree", options: OPTIONS, parallel: true, build: build_selected, estimate: Some(estimate) };
+static BUILDER: Builder = Builder {
+    name: "kdtree",
+    options: OPTIONS,
+    parallel: true,
+    purpose: |_| "",
+    build: build_selected,
+    estimate: Some(estimate),
+};
 
 const OPTIONS: &[OptionInfo] = &[
     OptionInfo::new(Axis::Build, "bins", "32", "bins per axis in the upper levels", Kind::Count(2, 64)),

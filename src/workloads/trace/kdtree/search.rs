@@ -22,7 +22,7 @@ pub static KDTREE: Algorithm = Algorithm {
     summary: "SAH kd-tree, short stack of four with pushdown and restart",
     paper: "Shevtsov et al. 2007; Wald and Havran 2006; Horn et al. 2007",
     builder: &BUILDER,
-    traversal: &SEARCH,
+    traversal: |_| &SEARCH,
     options: OPTIONS,
 };
 

@@ -89,6 +89,9 @@ pub struct Memory {
     pub geometry_bytes: u64,
     /// What the thesis of 2009 would have counted.
     pub thesis_bytes: u64,
+    /// The structure by the memory model of the source `rt2`, without geometry; 0 where it has none.
+    #[serde(default)]
+    pub rt2_bytes: u64,
 }
 
 /// A camera path.

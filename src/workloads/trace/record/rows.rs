@@ -63,6 +63,7 @@ pub fn structure_metrics(properties: &Properties, memory: Memory, build_ms: f64,
         Metric::new("structure_bytes", memory.structure_bytes),
         Metric::new("geometry_bytes", memory.geometry_bytes),
         Metric::new("thesis_bytes", memory.thesis_bytes),
+        Metric::new("rt2_bytes", memory.rt2_bytes),
     ];
     // A property that has no meaning for the structure is null
     let properties = serde_json::to_value(properties).unwrap_or_default();
@@ -87,6 +88,7 @@ fn memory_of(metrics: &[Metric]) -> Memory {
         structure_bytes: integer(metrics, "structure_bytes"),
         geometry_bytes: integer(metrics, "geometry_bytes"),
         thesis_bytes: integer(metrics, "thesis_bytes"),
+        rt2_bytes: integer(metrics, "rt2_bytes"),
     }
 }
 
@@ -195,6 +197,7 @@ impl ConfigurationRecord {
             Metric::new("structure_bytes", self.memory.structure_bytes),
             Metric::new("geometry_bytes", self.memory.geometry_bytes),
             Metric::new("thesis_bytes", self.memory.thesis_bytes),
+            Metric::new("rt2_bytes", self.memory.rt2_bytes),
         ];
         row.metrics.extend(self.dispatches.map(|n| Metric::new("dispatches", n)));
         row.metrics.extend(self.counters.iter().flat_map(counter_metrics));

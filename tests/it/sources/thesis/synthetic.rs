@@ -118,7 +118,7 @@ impl Builder {
 /// A hundred rays with so many steps and tests each.
 pub fn sums(steps: u64, tests: u64) -> CounterSums {
     let (inner, leaves) = (60 * steps, 40 * steps);
-    CounterSums { rays: 100, inner, leaves, tests: 100 * tests, pops: 500, restarts: 25 }
+    CounterSums { rays: 100, inner, leaves, tests: 100 * tests, pops: 500, restarts: 25, ..CounterSums::default() }
 }
 
 /// A bit of everything that tables, figures and claims can show.
