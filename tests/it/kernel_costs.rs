@@ -2,8 +2,8 @@
 
 use rtbench::device::vulkan::KernelCost;
 use rtbench::device::{Constants, KernelFile, Source, assemble};
-use rtbench::workloads::trace::{Selection, algorithms};
 use rtbench::workloads::trace::gpu::kernels;
+use rtbench::workloads::trace::{Selection, algorithms};
 use rtbench::workloads::{self, kernel_costs};
 use std::collections::BTreeSet;
 use std::process::Command;
@@ -134,6 +134,13 @@ fn no_registered_algorithm_and_no_kernel_file_is_left_out() {
         "trace/intersect/moller_trumbore.wgsl",
         "trace/kdtree/short_stack_private.wgsl",
         "trace/kdtree/short_stack_workgroup.wgsl",
+        "trace/staged/append.wgsl",
+        "trace/staged/bounce.wgsl",
+        "trace/staged/end.wgsl",
+        "trace/staged/list.wgsl",
+        "trace/staged/primary.wgsl",
+        "trace/staged/update_counted.wgsl",
+        "trace/staged/update_timed.wgsl",
         "trace/textures.wgsl",
     ];
     for (file, _) in kernels::FILES {

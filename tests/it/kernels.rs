@@ -7,8 +7,8 @@ use rtbench::math::Vertex;
 use rtbench::scene::{Light, Material};
 use rtbench::workloads::trace::backend::{Config, CountedPixel, Counters, Pixel};
 use rtbench::workloads::trace::brute::BruteUniform;
-use rtbench::workloads::trace::gpu::kernels::{self, Entry, Kernel};
-use rtbench::workloads::trace::gpu::{FrameUniform, TraceRay};
+use rtbench::workloads::trace::gpu::kernels::{self, Entry, Kernel, StagedPass};
+use rtbench::workloads::trace::gpu::{FrameUniform, TraceRay, WaitingPath};
 use rtbench::workloads::trace::grid::GridUniform;
 use rtbench::workloads::trace::grid::octants::Octant;
 use rtbench::workloads::trace::kdtree::KdTreeUniform;
@@ -41,8 +41,9 @@ fn every_variant_is_valid() {
     let kernels = kernels::all();
     assert_eq!(
         kernels.len(),
-        kernels::methods().len() * 8 * 4,
-        "six render and two trace entries, two kinds of driver, buffers and textures"
+        (kernels::methods().len() * 8 + 4) * 4,
+        "six render and two trace entries, three passes instead of one where they are staged, timed and counting, two \
+         kinds of driver, buffers and textures"
     );
     for algorithm in algorithms() {
         let method = method(algorithm.name);
@@ -63,6 +64,7 @@ fn every_variant_is_valid() {
         "bvh-stack:pattern=four",
         "bvh-stack:group=64x1",
         "bvh-stack:group=16x16",
+        "bvh-stack:reflections=staged",
     ];
     for text in special {
         assert!(kernels.iter().any(|kernel| kernel.method == method(text)), "{text} is not checked");
@@ -152,7 +154,8 @@ fn struct_layouts_agree() {
             first_column,
             columns,
             height,
-            shadow_reach
+            shadow_reach,
+            part
         ]
     );
     same_layout!(module, "Grid", GridUniform, [bounds_min, cell_size, bounds_max, resolution, octants]);
@@ -165,6 +168,15 @@ fn struct_layouts_agree() {
     assert_eq!(span as usize, size_of::<CountedPixel>());
     assert_eq!(members.iter().find(|m| m.0 == "t").unwrap().1 as usize, offset_of!(CountedPixel, t));
     assert_eq!(members.iter().find(|m| m.0 == "counters").unwrap().1 as usize, offset_of!(CountedPixel, counters));
+    let staged = Kernel {
+        entry: Entry::Staged { config: Config::PSR, counting: false, pass: StagedPass::Bounce },
+        method: method("bvh-stack:reflections=staged"),
+        stack_size: 32,
+        software_threads: 0,
+        textures: false,
+    };
+    let module = &check(&assemble(&staged)).unwrap();
+    same_layout!(module, "Waiting", WaitingPath, [origin, pixel, direction, weight, colour]);
     let module = &render("bvh-stack", false);
     same_layout!(module, "Pixel", Pixel, [triangle, rgba]);
     let (span, members) = layout(module, "Node");

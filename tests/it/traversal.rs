@@ -81,7 +81,7 @@ fn names() -> Vec<&'static str> {
 }
 
 /// Ways to walk a structure other than each one's own.
-const OTHERS: [&str; 25] = [
+const OTHERS: [&str; 28] = [
     "kdtree:search=restart",
     "kdtree:search=pushdown",
     "kdtree:stack=1",
@@ -99,6 +99,10 @@ const OTHERS: [&str; 25] = [
     "grid:group=32x1,tiles=3",
     "bvh-stack:group=16x16,checks=on",
     "bvh:tiles=2",
+    // Frames of several passes
+    "bvh-stack:reflections=staged",
+    "kdtree:reflections=staged,tiles=2",
+    "grid:reflections=staged,group=16x16,fetch=buffers",
     // Scene and structure in both kinds of memory, whichever a device would take by itself
     "grid:fetch=buffers",
     "kdtree:fetch=buffers",
@@ -166,7 +170,7 @@ proptest! {
     }
 }
 
-fn view(lights: usize) -> View {
+pub fn view(lights: usize) -> View {
     let direction = Vec3::new(0.3, -0.35, -1.0).normalize();
     let lights = (0..lights).map(|i| {
         let angle = i as f32 * 2.1;
@@ -178,7 +182,7 @@ fn view(lights: usize) -> View {
     }
 }
 
-fn shiny(mut scene: Scene) -> Scene {
+pub fn shiny(mut scene: Scene) -> Scene {
     scene.materials.push(Material::matt(Vec3::new(0.3, 0.5, 0.8)).shiny(Vec3::splat(0.5), 30.0, 0.6));
     for (index, triangle) in scene.triangles.iter_mut().enumerate() {
         triangle.material = (index % 3 == 0) as u32;
@@ -186,7 +190,7 @@ fn shiny(mut scene: Scene) -> Scene {
     scene
 }
 
-fn counted(
+pub fn counted(
     backend: &dyn Backend,
     scene: &Scene,
     name: &str,
@@ -203,7 +207,7 @@ fn counted(
 }
 
 /// Sizes that are no multiple of a work-group's eight: the last groups hang over the edge.
-const SIZE: Size = Size { width: 75, height: 43 };
+pub const SIZE: Size = Size { width: 75, height: 43 };
 
 #[test]
 fn timed_and_counting_twins_make_the_same_picture() {

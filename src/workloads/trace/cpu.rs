@@ -121,10 +121,12 @@ impl<'a, T: Traverse> CpuPrepared<'a, T> {
         convert: impl Fn(CountedPixel) -> P + Sync,
     ) {
         self.device.pool().install(|| match self.method.reflections {
-            Reflections::Fused => self.groups(frame, tile, out, |corner, pixels| {
-                render_group::<T, C>(frame, &self.traversal, corner, |x, y, pixel| pixels.set(x, y, convert(pixel)));
-            }),
-            Reflections::Staged => self.staged::<C, P>(frame, tile, out, convert),
+            Reflections::Fused => {
+                self.groups(frame, tile, out, |corner, pixels| {
+                    render_group::<T, C>(frame, &self.traversal, corner, |x, y, p| pixels.set(x, y, convert(p)));
+                });
+            }
+            Reflections::Staged => self.staged::<C, P>(frame, tile, out, &convert),
         });
     }
 
@@ -153,7 +155,7 @@ impl<'a, T: Traverse> CpuPrepared<'a, T> {
         frame: &Frame,
         tile: Tile,
         out: &mut [P],
-        convert: impl Fn(CountedPixel) -> P + Sync,
+        convert: &(impl Fn(CountedPixel) -> P + Sync),
     ) {
         let lists = self.groups(frame, tile, out, |corner, pixels| {
             let mut list = Vec::new();

@@ -124,7 +124,8 @@ impl<'a> Frame<'a> {
         set_of((0..self.group.size() as usize).filter(is_inside))
     }
 
-    /// The primary rays of a group whose top left pixel is `(column, row)`; `inside` says which pixels are in the image.
+    /// The primary rays of a group whose top left pixel is `(column, row)`; `inside` says which pixels are in the
+    /// image.
     pub fn start_paths<C: Count>(&self, (column, row): (u32, u32), inside: u64) -> Paths<C> {
         Paths {
             rays: std::array::from_fn(|lane| {
