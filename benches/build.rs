@@ -13,7 +13,17 @@ use rtbench::workloads::trace::Selection;
 use std::hint::black_box;
 use std::time::Duration;
 
-const STRUCTURES: [&str; 4] = ["grid", "kdtree", "bvh", "ploc-stack"];
+const STRUCTURES: [&str; 9] = [
+    "grid",
+    "kdtree",
+    "kdtree:build=sort",
+    "kdtree:build=sort,sorting=every-node",
+    "kdtree:build=min-max",
+    "kdtree:build=sort,search=ropes",
+    "kdtree:build=sort,push=off,search=ropes",
+    "bvh",
+    "ploc-stack",
+];
 
 fn build(c: &mut Criterion) {
     let sizes: &[usize] = if common::measuring() { &[10_000, 100_000, 1_000_000] } else { &[1000] };

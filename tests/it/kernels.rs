@@ -11,7 +11,7 @@ use rtbench::workloads::trace::gpu::kernels::{self, Entry, Kernel, StagedPass};
 use rtbench::workloads::trace::gpu::{FrameUniform, TraceRay, WaitingPath};
 use rtbench::workloads::trace::grid::GridUniform;
 use rtbench::workloads::trace::grid::octants::Octant;
-use rtbench::workloads::trace::kdtree::KdTreeUniform;
+use rtbench::workloads::trace::kdtree::{KdTreeUniform, RopeLeaf};
 use rtbench::workloads::trace::{Method, Selection, algorithms};
 use std::mem::offset_of;
 
@@ -53,6 +53,8 @@ fn every_variant_is_valid() {
         "kdtree:memory=private",
         "kdtree:search=pushdown",
         "kdtree:search=restart",
+        "kdtree:search=stack",
+        "kdtree:search=ropes",
         "kdtree:stack=1",
         "kdtree:stack=32",
         "bvh:vote=original",
@@ -197,5 +199,10 @@ fn struct_layouts_agree() {
     let module = &check(&assemble(&kernel)).unwrap();
     same_layout!(module, "GivenRay", TraceRay, [origin, direction]);
     same_layout!(module, "KdTree", KdTreeUniform, [bounds_min, bounds_max]);
+    // Rows of 16 bytes, of which kernels read whole ones
+    let rows =
+        [offset_of!(RopeLeaf, min), offset_of!(RopeLeaf, max), offset_of!(RopeLeaf, low), offset_of!(RopeLeaf, high)];
+    assert_eq!((rows, size_of::<RopeLeaf>()), ([0, 16, 32, 48], 64));
+    assert_eq!([offset_of!(RopeLeaf, first), offset_of!(RopeLeaf, count)], [12, 28]);
     same_layout!(&render("brute", false), "Brute", BruteUniform, [triangle_refs]);
 }

@@ -81,7 +81,7 @@ fn names() -> Vec<&'static str> {
 }
 
 /// Ways to walk a structure other than each one's own.
-const OTHERS: [&str; 28] = [
+const OTHERS: [&str; 37] = [
     "kdtree:search=restart",
     "kdtree:search=pushdown",
     "kdtree:stack=1",
@@ -89,6 +89,13 @@ const OTHERS: [&str; 28] = [
     "kdtree:stack=2",
     "kdtree:stack=5,memory=private",
     "kdtree:stack=32",
+    "kdtree:search=stack",
+    "kdtree:search=ropes",
+    "kdtree:push=off,search=ropes",
+    "kdtree:thin=0,search=stack",
+    "kdtree:thin=0,search=ropes",
+    "kdtree:build=sort,search=ropes",
+    "kdtree:build=min-max,search=ropes",
     "kdtree:thin=0,search=restart",
     "kdtree:thin=0,stack=1",
     "bvh:vote=original",
@@ -108,8 +115,10 @@ const OTHERS: [&str; 28] = [
     "kdtree:fetch=buffers",
     "bvh:fetch=buffers",
     "bvh-stack:fetch=buffers",
+    "kdtree:search=ropes,fetch=buffers",
     "grid:fetch=textures",
     "kdtree:fetch=textures",
+    "kdtree:search=ropes,fetch=textures",
     "bvh:fetch=textures",
     "bvh-stack:fetch=textures",
 ];
