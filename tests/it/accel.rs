@@ -6,6 +6,7 @@ mod degenerate;
 mod kdtree_sort;
 mod registry;
 mod scenes;
+mod selections;
 mod thesis;
 
 use glam::Vec3;
