@@ -6,6 +6,7 @@
 pub mod claims;
 pub mod convention;
 pub mod report;
+pub mod rows;
 pub mod runs;
 pub mod thesis;
 

@@ -12,6 +12,7 @@ pub use html::write as html;
 pub use text::{Form, summary, write};
 
 use crate::compare::judge::{Outcome, Verdict};
+use crate::sources::rows::Device;
 use serde::Serialize;
 
 /// What a verdict rests on.
@@ -155,6 +156,39 @@ impl Finding {
             needs: statement.needs,
             warnings: Vec::new(),
         }
+    }
+}
+
+/// What a claim is judged by on a device, and what to beware of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grounds {
+    /// Frame times, or counts in their place.
+    pub basis: Basis,
+    /// True for frame times of a device that computes on the CPU.
+    pub without_gpu: bool,
+    /// Warnings for the finding.
+    pub warnings: Vec<String>,
+}
+
+impl Grounds {
+    /// The grounds of a claim whose own basis is `basis`, on a device if one is involved. Where that device's times say
+    /// nothing about a GPU, counts decide; `counts` names them, and is none where they cannot. `remark` is a warning of
+    /// the claim itself; it may be empty.
+    pub fn of(basis: Basis, device: Option<&Device>, counts: Option<&str>, remark: &str) -> Grounds {
+        let software = basis == Basis::FrameTimes && device.is_some_and(Device::is_software);
+        let (basis, warning) = match counts.filter(|_| software) {
+            Some(counts) => {
+                let warning = format!("Judged by {counts} per ray: this device's times say nothing about a GPU's.");
+                (Basis::Counts, Some(warning))
+            }
+            None if software => {
+                (basis, Some("About this machine only: the device computes on the CPU and is no GPU.".to_owned()))
+            }
+            None => (basis, None),
+        };
+        let remark = Some(remark.to_owned()).filter(|remark| !remark.is_empty());
+        let warnings = warning.into_iter().chain(remark).collect();
+        Grounds { basis, without_gpu: software && basis == Basis::FrameTimes, warnings }
     }
 }
 
