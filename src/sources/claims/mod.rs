@@ -23,6 +23,8 @@ pub enum Basis {
     BuildTimes,
     /// Sizes in memory.
     Sizes,
+    /// What structures are like: leaves, references, expected costs.
+    Properties,
     /// Frame times.
     FrameTimes,
     /// Steps and triangle tests per ray: where frame times of a device say nothing about a GPU.
@@ -35,6 +37,7 @@ impl Basis {
         match self {
             Basis::BuildTimes => "build times",
             Basis::Sizes => "sizes",
+            Basis::Properties => "properties of structures",
             Basis::FrameTimes => "frame times",
             Basis::Counts => "counts",
         }

@@ -4,15 +4,19 @@ use super::data::{Counts, Data, Failure, Frame, Scene};
 use super::scenes::SceneKey;
 use super::structures;
 use super::structures::Step;
+use super::variant::Variant;
 use crate::sources::convention::Steps;
 use crate::sources::rows::{Built, Devices, choose_built, choose_frames, unlike_devices};
+use crate::sources::rt2;
 use crate::sources::runs::RecordedRun;
 use crate::workloads::trace::record::{ConfigurationRecord, CounterSums, SceneRecord};
 use std::collections::HashMap;
 
-/// True if a run has rows that the thesis's tables can show.
+/// True if a run has rows that the thesis's tables can show: all but those of another document's own structures.
 pub fn has_rows(run: &RecordedRun) -> bool {
-    !run.journal.structures.is_empty() || !run.journal.configurations.is_empty()
+    let of_thesis = |structure: &str, variant: &str| !rt2::structures::is_own(structure, &Variant::parse(variant));
+    run.journal.structures.iter().any(|s| of_thesis(&s.structure, &s.variant))
+        || run.journal.configurations.iter().any(|c| of_thesis(&c.structure, &c.variant))
 }
 
 /// Everything that runs have measured. Of several measurements of the same, the last complete one counts; of unlike

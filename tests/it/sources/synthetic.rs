@@ -2,11 +2,13 @@
 
 use crate::fakes;
 use rtbench::device::DeviceType;
+use rtbench::record::journal::{JournalWriter, Record};
 use rtbench::record::row::{Samples, Status, TimingSource};
 use rtbench::record::run::End;
 use rtbench::sources::runs::RecordedRun;
 use rtbench::workloads::trace::rays::Config;
 use rtbench::workloads::trace::record::{ConfigurationRecord, CounterSums, SceneRecord, StructureRecord, TraceJournal};
+use std::path::Path;
 
 /// A run on a discrete GPU, to be filled.
 pub struct Builder {
@@ -89,4 +91,12 @@ impl Builder {
 pub fn sums(steps: u64, tests: u64) -> CounterSums {
     let (inner, leaves) = (60 * steps, 40 * steps);
     CounterSums { rays: 100, inner, leaves, tests: 100 * tests, pops: 500, restarts: 25, ..CounterSums::default() }
+}
+
+/// A run's folder as a sweep leaves it.
+pub fn write_run(run: &RecordedRun, folder: &Path) {
+    let journal = &run.journal;
+    let mut writer = JournalWriter::create(folder, journal.provenance.clone()).unwrap();
+    journal.records().iter().for_each(|record| writer.write(record).unwrap());
+    writer.write(&Record::End(journal.end.clone().unwrap())).unwrap();
 }
