@@ -38,8 +38,8 @@ fn mib(bytes: u64) -> f64 {
 }
 
 fn sizes(context: &Context, places: &[Place], memory: impl Fn(&SceneKey, Trees) -> Option<Memory>) -> Table {
-    let sizes: [(&str, fn(&Memory) -> u64); 2] =
-        [("model", |memory| memory.rt2_bytes), ("allocated", |memory| memory.structure_bytes)];
+    type Size = (&'static str, fn(&Memory) -> u64);
+    let sizes: [Size; 2] = [("model", |memory| memory.rt2_bytes), ("allocated", |memory| memory.structure_bytes)];
     let mut columns = Vec::new();
     for (group, _) in sizes {
         columns.extend(THREE.iter().map(|(name, _)| Column::of(group, name, "MiB", Form::Fixed(2))));
