@@ -64,8 +64,8 @@ impl RopeLeaf {
 pub struct RopeTree {
     /// The tree without ropes.
     pub tree: KdTree,
-    /// What kernels read: the tree's nodes, two in a row, where a leaf's first word is the number of its first row; then
-    /// four rows a leaf ([`RopeLeaf`]), in the order of the tree.
+    /// What kernels read: the tree's nodes, two in a row, where a leaf's first word is the number of its first row;
+    /// then four rows a leaf ([`RopeLeaf`]), in the order of the tree.
     pub rows: Vec<Row>,
     /// Each rope ends at the smallest node that covers its face. Else at the largest that touches it.
     pub pushed: bool,

@@ -3,9 +3,9 @@
 //!
 //! S. Popov, J. Günther, H.-P. Seidel, P. Slusallek: Stackless KD-Tree Traversal for High Performance GPU Ray Tracing,
 //! 2007. Ours is what happens at edges: where a ray leaves a leaf through several faces at once, passes a plane exactly
-//! where it enters a node, or meets a cell of no length, a stack visits cells that no rope leads to. Such a ray is given
-//! up and finished by the search with a trail ([`super::search`]), which needs no memory either. All others visit the
-//! leaves that a stack visits, in the same order.
+//! where it enters a node, or meets a cell of no length, a stack visits cells that no rope leads to. Such a ray is
+//! given up and finished by the search with a trail ([`super::search`]), which needs no memory either. All others visit
+//! the leaves that a stack visits, in the same order.
 
 use crate::math::{MISS, Ray};
 use crate::workloads::trace::algorithm::{Parameter, Parameters, Traversal};

@@ -260,8 +260,8 @@ impl<'a, const MOST: usize> KdTree<'a, MOST> {
 }
 
 impl<const MOST: usize> KdTree<'_, MOST> {
-    /// The triangle reference of the nearest hit before `limit`, with `ANY` of some hit there, or [`crate::math::MISS`]. `best` is
-    /// what another search of the same ray has found already.
+    /// The triangle reference of the nearest hit before `limit`, with `ANY` of some hit there, or
+    /// [`crate::math::MISS`]. `best` is what another search of the same ray has found already.
     #[inline]
     pub(crate) fn search<const ANY: bool, C: Count>(
         &self,
