@@ -13,7 +13,17 @@ use rtbench::workloads::trace::Selection;
 use std::hint::black_box;
 use std::time::Duration;
 
-const STRUCTURES: [&str; 4] = ["grid", "kdtree", "bvh", "ploc-stack"];
+const STRUCTURES: [&str; 9] = [
+    "grid",
+    "kdtree",
+    "bvh",
+    "bvh:max_leaf=3",
+    "bvh:build=sweep,max_leaf=3",
+    "bvh:build=sweep,max_leaf=3,sorting=every-node",
+    "bvh:build=spatial,max_leaf=3",
+    "bih",
+    "ploc-stack",
+];
 
 fn build(c: &mut Criterion) {
     let sizes: &[usize] = if common::measuring() { &[10_000, 100_000, 1_000_000] } else { &[1000] };

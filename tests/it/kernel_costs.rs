@@ -2,8 +2,8 @@
 
 use rtbench::device::vulkan::KernelCost;
 use rtbench::device::{Constants, KernelFile, Source, assemble};
-use rtbench::workloads::trace::{Selection, algorithms};
 use rtbench::workloads::trace::gpu::kernels;
+use rtbench::workloads::trace::{Selection, algorithms};
 use rtbench::workloads::{self, kernel_costs};
 use std::collections::BTreeSet;
 use std::process::Command;

@@ -175,6 +175,8 @@ pub fn methods() -> Vec<Method> {
             option.examples().iter().for_each(|value| add(&format!("{}:{}={value}", algorithm.name, option.key)));
         }
     }
+    // What a traversal does otherwise in trees with clipped boxes
+    ["bvh:build=spatial", "bvh-stack:build=spatial", "bvh-stack:build=spatial,cull=off"].into_iter().for_each(&mut add);
     for option in COMMON_OPTIONS.iter().filter(|option| option.axis == Axis::Rays) {
         option.examples().iter().for_each(|value| add(&format!("bvh-stack:{}={value}", option.key)));
     }
