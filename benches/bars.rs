@@ -1,5 +1,5 @@
-//! The bars of the builders, as ratios of interleaved rounds in one run: `cargo bench --bench bars`. Those of two threads
-//! mean something only on a machine on which two builds at once take no longer than one.
+//! The bars of the builders, as ratios of interleaved rounds in one run: `cargo bench --bench bars`. Those of two
+//! threads mean something only on a machine on which two builds at once take no longer than one.
 //!
 //! Every round builds each contestant once, in alternating order; a ratio is the median of the rounds' ratios, with the
 //! interval that an exact sign test gives at about 95 %.

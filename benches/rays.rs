@@ -1,9 +1,9 @@
 //! The bars of the traversals, as ratios of interleaved rounds in one run: `cargo bench --bench rays`.
 //!
 //! One frame of primary rays, 1024 squared: obvhs's own CPU traversal (medium build, precomputed triangles, hit or miss
-//! only) against `bvh-stack` of each builder, `bih` and `ploc-stack`, which also shade and store, as CPU twins and on the
-//! best Vulkan device. Rounds alternate in order; a ratio is the median of the rounds' ratios, with the interval that an
-//! exact sign test gives at about 95 %.
+//! only) against `bvh-stack` of each builder, `bih` and `ploc-stack`, which also shade and store, as CPU twins and on
+//! the best Vulkan device. Rounds alternate in order; a ratio is the median of the rounds' ratios, with the interval
+//! that an exact sign test gives at about 95 %.
 
 mod common;
 

@@ -38,7 +38,7 @@ pub const SELECTIONS: [&str; 34] = [
     "bvh:build=sweep,max_leaf=3",
     "bvh:build=sweep,max_leaf=3,sorting=every-node",
     "bvh:build=sweep,max_leaf=15,kt=1",
-    "bvh:build=sweep,max_leaf=1,axes=longest,max_depth=32",
+    "bvh:build=sweep,max_leaf=1,axes=longest,max_depth=20",
     "bvh:build=sweep,max_leaf=1,max_depth=440",
     "bvh:build=spatial,max_leaf=3",
     "bvh:build=spatial,max_leaf=1,alpha=0",

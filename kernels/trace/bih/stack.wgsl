@@ -1,8 +1,8 @@
 // Bounding interval hierarchy, one ray per invocation with a private stack, nearer child first (Wächter and Keller
 // 2006). Twin: src/workloads/trace/bih/stack.rs.
 //
-// A node has two planes on one axis: where its lower child ends, and where its upper child begins. Between them may be a
-// gap, through which a ray goes without entering either child.
+// A node has two planes on one axis: where its lower child ends, and where its upper child begins. Between them may be
+// a gap, through which a ray goes without entering either child.
 
 //!include lib/independent.wgsl
 

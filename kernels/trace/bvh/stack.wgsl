@@ -2,8 +2,8 @@
 //
 // Two loops alternate (Aila and Laine 2009): down to a leaf, then through its triangles. Where several rays share an
 // instruction stream, none of them pays for both in every step. The stack keeps the distance of each node's box, so
-// that a node that lies beyond a hit found meanwhile is dropped without being read. Without CULL, boxes are compared with
-// the ray's limit only, and never with a hit.
+// that a node that lies beyond a hit found meanwhile is dropped without being read. Without CULL, boxes are compared
+// with the ray's limit only, and never with a hit.
 
 //!include lib/independent.wgsl
 //!include trace/bvh/node.wgsl

@@ -87,10 +87,10 @@ fn in_a_bvh() {
 /// Divided triangles: the leaves of each together must hold all of it.
 #[test]
 fn in_a_bvh_with_spatial_splits() {
-    let scene = scenes::slivers("slivers", 60, 9);
+    let scene = scenes::beams(200, 9);
     let good: Bvh = build_as("bvh:build=spatial,max_leaf=1,alpha=0", &scene);
     good.validate(&scene).unwrap();
-    assert!(good.triangle_refs.len() > 70, "hardly any triangle is divided");
+    assert!(good.triangle_refs.len() > 220, "hardly any triangle is divided");
     let verdict = |damage: &dyn Fn(&mut Bvh)| {
         let mut broken = good.clone();
         damage(&mut broken);

@@ -110,8 +110,8 @@ fn no_structure_multiplies_its_records_without_bound() {
     }
 }
 
-/// Spatial splits everywhere: at most four references a triangle, and the same tree for any number of threads where that
-/// bound has an effect.
+/// Spatial splits everywhere: at most four references a triangle, and the same tree for any number of threads where
+/// that bound has an effect.
 #[test]
 fn spatial_splits_end_at_four_references_a_triangle() {
     let mut bounded = 0;

@@ -159,7 +159,7 @@ fn what_it_does_not_know_it_names_with_what_there_is() {
         ("bvh:bins", "'' is no value for bins", "from 2 to 32"),
         ("bvh:max_leaf=16", "'16'", "from 1 to 15"),
         ("bvh:build=sah", "'sah' is no value for build", "binned, sweep, spatial"),
-        ("bvh:max_depth=441", "'441'", "from 32 to 440"),
+        ("bvh:max_depth=441", "'441'", "from 1 to 440"),
         ("bvh-stack:cull=no", "'no'", "on, off"),
         ("bvh:cull=off", "no option 'cull'", "vote"),
         ("bih:max_leaf=0", "'0'", "from 1 to 15"),

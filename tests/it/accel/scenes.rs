@@ -57,25 +57,19 @@ pub fn powers_of_ten() -> Scene {
     soup("powers of ten", (-240..240).map(|i| [corners(i), corners(i), corners(i)]))
 }
 
-/// The same around a cluster: a tree must go far down to the cluster, and then divide it.
-pub fn cluster_in_powers_of_ten() -> Scene {
-    let mut scene = random("cluster in powers of ten", 60_000, 1.0, 0.02, 12);
-    let corner = |i: i32| Vec3::splat(10_f32.powi(i / 8) * (1.0 + 0.1 * (i % 8) as f32));
-    let far = soup("far", (8..120).map(|i| [corner(i), corner(i) + Vec3::X, corner(i) + Vec3::Y]));
-    let first = scene.vertices.len() as u32;
-    scene.vertices.extend(far.vertices);
-    scene.triangles.extend(far.triangles.iter().map(|t| Triangle { vertices: t.vertices.map(|v| v + first), ..*t }));
-    scene
-}
-
-/// Long thin triangles in all directions, whose boxes hold little of them.
-pub fn slivers(name: &str, count: usize, seed: u64) -> Scene {
+/// Long thin triangles, whose boxes hold little of them, among many small ones: where spatial splits pay.
+pub fn beams(count: usize, seed: u64) -> Scene {
     let mut next = numbers(seed);
     soup(
-        name,
-        (0..count).map(|_| {
-            let (at, along) = (point(&mut next), (point(&mut next) - 0.5) * 0.8);
-            [at, at + along, at + along * 0.9 + point(&mut next) * 0.02]
+        "beams",
+        (0..count).map(|i| {
+            let at = point(&mut next);
+            if i % 10 == 0 {
+                let along = point(&mut next);
+                [at * 0.3, at * 0.3 + along, at * 0.3 + along * 0.95 + point(&mut next) * 0.02]
+            } else {
+                [at, at + point(&mut next) * 0.03, at + point(&mut next) * 0.03]
+            }
         }),
     )
 }

@@ -65,12 +65,12 @@ fn where_little_overlaps_it_gains_nothing() {
 
 #[test]
 fn no_split_below_the_depth_and_none_in_small_nodes() {
-    let scene = scenes::slivers("slivers", 400, 2);
+    let scene = scenes::beams(400, 9);
     let references = |options: &str| build(&format!("bvh:build=spatial,{options}"), &scene, 1).triangle_refs().len();
     assert_eq!(references("alpha=0,spatial_depth=0"), 400);
     let by_depth = [1, 2, 4, 8].map(|depth| references(&format!("alpha=0,spatial_depth={depth}")));
     assert!(by_depth.is_sorted() && by_depth[0] > 400, "{by_depth:?}");
-    let twelve = scenes::slivers("a dozen", 12, 2);
+    let twelve = scenes::beams(12, 9);
     let built =
         |options: &str| build(&format!("bvh:build=spatial,alpha=0,{options}"), &twelve, 1).triangle_refs().len();
     assert_eq!(built("max_leaf=3"), 12);
@@ -137,8 +137,8 @@ fn boxes_that_are_too_small_lose_hits() {
 #[test]
 fn no_hit_is_lost_from_afar() {
     let cpu = CpuBackend::new(0).unwrap();
-    let scene = scenes::slivers("slivers", 3_000, 8);
-    assert!(build("bvh:build=spatial,alpha=0,max_leaf=2", &scene, 1).triangle_refs().len() > 4_000);
+    let scene = scenes::beams(3_000, 9);
+    assert!(build("bvh:build=spatial,alpha=0,max_leaf=2", &scene, 1).triangle_refs().len() > 5_000);
     for distance in [1e2, 1e4, 1e6] {
         let mut rays = aimed(&scene, Aim::Edge, (scene.bounds().center(), distance), 20_000, 3);
         rays.extend(aimed(&scene, Aim::Vertex, (scene.bounds().center(), distance), 20_000, 4));

@@ -1,8 +1,8 @@
 //! Builder of bounding interval hierarchies: halves boxes of a grid over the scene, each on its longest axis.
 //!
 //! C. Wächter and A. Keller: Instant Ray Tracing: The Bounding Interval Hierarchy, 2006. Triangles go to the side on
-//! which the centre of their box lies; a box with all centres on one side is halved again without a node. The planes of a
-//! node are the largest coordinate of its lower and the smallest of its upper child. Ours: where centres cannot be
+//! which the centre of their box lies; a box with all centres on one side is halved again without a node. The planes of
+//! a node are the largest coordinate of its lower and the smallest of its upper child. Ours: where centres cannot be
 //! separated, and near the greatest depth, a node's triangles are halved.
 
 use crate::error::Result;

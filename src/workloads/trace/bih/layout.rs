@@ -18,8 +18,8 @@ use std::borrow::Cow;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct BihNode {
-    /// Low two bits: axis, or 3 for a leaf. High 30 bits: index of the lower child, which the upper one follows, or first
-    /// triangle reference.
+    /// Low two bits: axis, or 3 for a leaf. High 30 bits: index of the lower child, which the upper one follows, or
+    /// first triangle reference.
     pub link: u32,
     /// Inner node: where the lower child ends and where the upper child begins (bits of an f32 each). Leaf: number of
     /// triangle references, and 0.
@@ -82,8 +82,8 @@ impl PartNode for BihNode {
     }
 }
 
-/// A built hierarchy. `nodes[0]` is the root, `nodes[1]` an empty leaf that no traversal visits, so that siblings lie at
-/// an even index and the next. An empty scene has two empty leaves.
+/// A built hierarchy. `nodes[0]` is the root, `nodes[1]` an empty leaf that no traversal visits, so that siblings lie
+/// at an even index and the next. An empty scene has two empty leaves.
 #[derive(Clone, Debug)]
 pub struct Bih {
     /// Box around everything.

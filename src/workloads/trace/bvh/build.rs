@@ -1,6 +1,6 @@
 //! BVH builder: top down, SAH over binned centroids, until at most `max_leaf` triangles are left.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::workloads::trace::bvh::bins::{Binning, Item, Rows, Splitter};
 use crate::workloads::trace::bvh::partition::{Partitioner, Sides, centroid_bounds, halve};
@@ -20,7 +20,7 @@ pub struct Config {
     /// A node that could be a leaf is split all the same where that is cheaper. An infinite cost of a step makes it a
     /// leaf always.
     pub cost: CostModel,
-    /// Levels of inner nodes that no tree exceeds, 32 to [`crate::workloads::trace::bvh::DEPTH_LIMIT`].
+    /// Levels of inner nodes that no tree exceeds, 1 to [`crate::workloads::trace::bvh::DEPTH_LIMIT`].
     pub max_depth: u32,
 }
 
@@ -46,6 +46,7 @@ pub fn build(scene: &Scene, config: &Config) -> Result<Bvh> {
     if items.is_empty() {
         return Ok(Bvh { bounds, nodes: vec![BvhNode::NONE; 2], triangle_refs: Vec::new(), depth: 0 });
     }
+    check_depth(items.len(), config.max_depth)?;
     let builder = Builder { config: *config, unit: unit(&bounds) };
     let rows = Rows { min: bounds.min.extend(0.0), max: bounds.max.extend(0.0) };
     let part = builder.grow(&mut items, 0, rows, 0);
@@ -156,6 +157,21 @@ impl Builder {
 /// True if halving `items` from here on just keeps within the greatest depth: below this depth there are only median
 /// splits, so that it holds.
 pub(crate) fn is_near_the_bottom(items: usize, depth: u32, max_depth: u32) -> bool {
-    let halvings = usize::BITS - items.leading_zeros();
-    depth + halvings >= max_depth
+    depth + halvings(items) >= max_depth
+}
+
+/// Refuses a greatest depth that does not hold even if every node is halved.
+pub(crate) fn check_depth(items: usize, max_depth: u32) -> Result<()> {
+    match halvings(items) {
+        levels if levels <= max_depth => Ok(()),
+        levels => {
+            let problem = format!("{items} triangles may take {levels} levels, more than {max_depth}");
+            Err(Error::too_large("the tree", problem, "set a greater max_depth"))
+        }
+    }
+}
+
+/// Levels that are enough for so many items if every node is halved.
+fn halvings(items: usize) -> u32 {
+    usize::BITS - items.leading_zeros()
 }

@@ -1,7 +1,7 @@
 //! Invariants of a BVH.
 //!
-//! A builder may divide a triangle into several references. The leaf of each holds a part of the triangle's box, which a
-//! builder enlarges so that no hit is lost; what is asked of all of them together is that they cover the triangle.
+//! A builder may divide a triangle into several references. The leaf of each holds a part of the triangle's box, which
+//! a builder enlarges so that no hit is lost; what is asked of all of them together is that they cover the triangle.
 
 use crate::math::Aabb;
 use crate::workloads::trace::bvh::cover::is_covered;

@@ -6,8 +6,8 @@ use glam::DVec3;
 /// A convex part of a triangle: its corners in order.
 type Polygon = Vec<DVec3>;
 
-/// True if the boxes cover the triangle. Exact but for the corners of parts, which are computed in f64; a part that ends
-/// at a plane ends exactly there.
+/// True if the boxes cover the triangle. Exact but for the corners of parts, which are computed in f64; a part that
+/// ends at a plane ends exactly there.
 pub(crate) fn is_covered(corners: [DVec3; 3], boxes: impl Iterator<Item = Aabb>) -> bool {
     let mut rest = vec![corners.to_vec()];
     for b in boxes {

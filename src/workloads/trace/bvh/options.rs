@@ -53,7 +53,7 @@ pub(super) const OPTIONS: &[OptionInfo] = &[
         "max_depth",
         "60",
         "greatest depth, near which nodes are halved; stacks are sized by the depth of the tree that was built",
-        Kind::Count(32, DEPTH_LIMIT),
+        Kind::Count(1, DEPTH_LIMIT),
     ),
     OptionInfo::new(
         Axis::Build,

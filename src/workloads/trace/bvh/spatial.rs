@@ -3,8 +3,8 @@
 //! M. Stich, H. Friedrich, A. Dietrich: Spatial Splits in Bounding Volume Hierarchies, 2009. A spatial split is tried
 //! where the sides of the best object split overlap by at least `alpha` of the root's surface; bins are filled by
 //! clipping triangles at every border; a reference across the chosen plane goes to one side as a whole where that is
-//! cheaper. Ours are: the margin of clipped boxes ([`Clipper`]), the bound on references ([`Sides::spare`]), and that small
-//! nodes are not divided ([`FEW_LEAVES`]).
+//! cheaper. Ours are: the margin of clipped boxes ([`Clipper`]), the bound on references ([`Sides::spare`]), and that
+//! small nodes are not divided ([`FEW_LEAVES`]).
 
 use crate::workloads::trace::bvh::bins::Rows;
 use crate::workloads::trace::bvh::clip::Clipper;

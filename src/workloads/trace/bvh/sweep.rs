@@ -8,7 +8,7 @@
 use crate::error::Result;
 use crate::scene::Scene;
 use crate::workloads::trace::bvh::bins::Rows;
-use crate::workloads::trace::bvh::build::is_near_the_bottom;
+use crate::workloads::trace::bvh::build::{check_depth, is_near_the_bottom};
 use crate::workloads::trace::bvh::clip::Clipper;
 use crate::workloads::trace::bvh::lists::{Border, Pivot, around, cheapest, sort, sorted};
 use crate::workloads::trace::bvh::spatial::{FEW_LEAVES, MOST_REFERENCES, Sides, Spatial, SpatialConfig};
@@ -35,7 +35,7 @@ pub struct Config {
     /// A node that could be a leaf is split all the same where that is cheaper. An infinite cost of a step makes it a
     /// leaf always.
     pub cost: CostModel,
-    /// Levels of inner nodes that no tree exceeds, 32 to [`crate::workloads::trace::bvh::DEPTH_LIMIT`].
+    /// Levels of inner nodes that no tree exceeds, 1 to [`crate::workloads::trace::bvh::DEPTH_LIMIT`].
     pub max_depth: u32,
     /// Has no effect on the tree. Spatial splits need lists that are sorted once.
     pub sorting: Sorting,
@@ -68,6 +68,7 @@ pub fn build(scene: &Scene, config: &Config) -> Result<Bvh> {
     if prims.is_empty() {
         return Ok(Bvh { bounds, nodes: vec![BvhNode::NONE; 2], triangle_refs: Vec::new(), depth: 0 });
     }
+    check_depth(prims.len(), config.max_depth)?;
     let rows = Rows { min: bounds.min.extend(0.0), max: bounds.max.extend(0.0) };
     let unit = unit(&bounds);
     let spatial = config.spatial.map(|spatial| {

@@ -2,9 +2,9 @@
 //! `kernels/trace/bvh/widened.wgsl`.
 //!
 //! The ray/triangle test accepts hits that lie outside of a triangle by some roundings of distances from the ray's
-//! origin. The triangle's own box is safe all the same (see [`crate::math`]), but not a box around a part of it. Builders
-//! that clip give boxes a margin for rays that start near the scene; this one grows with the distance, so that nothing
-//! is lost from afar. It is the same for all boxes, which keeps their order.
+//! origin. The triangle's own box is safe all the same (see [`crate::math`]), but not a box around a part of it.
+//! Builders that clip give boxes a margin for rays that start near the scene; this one grows with the distance, so that
+//! nothing is lost from afar. It is the same for all boxes, which keeps their order.
 
 use super::{Bvh, ploc};
 use crate::math::Ray;
