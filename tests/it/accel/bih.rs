@@ -11,7 +11,7 @@ use rtbench::workloads::trace::backend::{Backend, Config, Counters, GivenRay, Si
 use rtbench::workloads::trace::bih::Bih;
 use rtbench::workloads::trace::{CpuBackend, Selection, Structure};
 
-/// SPEC-RT2 section 11: 0.94 to 1.0 nodes a triangle with leaves of at most three, 15 to 16 bytes in the model.
+/// 0.94 to 1.0 nodes a triangle with leaves of at most three, 15 to 16 bytes in the model.
 #[test]
 fn nodes_are_twelve_bytes_and_nearly_one_a_triangle() {
     let built_in = ["scan:triangles=32000", "room:triangles=80000", "sphereflake:triangles=107000"];

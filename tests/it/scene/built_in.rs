@@ -170,7 +170,7 @@ fn more_spikes_than_triangles_allow_are_refused() {
     assert!(scene::load("room:spikes=3").unwrap_err().to_string().contains("no parameter"));
 }
 
-/// SPEC-RT2 section 7: by the memory model of 2010 a kd-tree takes more than a BVH exactly if 16 L + 4 R > 48 N, with
+/// By the memory model of 2010 a kd-tree takes more than a BVH exactly if 16 L + 4 R > 48 N, with
 /// leaves, references and nodes of a BVH a triangle: not on the smooth shape, but on the one with points.
 #[test]
 fn a_kd_tree_takes_more_than_a_bvh_on_the_spiky_shape_alone() {
