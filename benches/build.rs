@@ -13,9 +13,14 @@ use rtbench::workloads::trace::Selection;
 use std::hint::black_box;
 use std::time::Duration;
 
-const STRUCTURES: [&str; 9] = [
+const STRUCTURES: [&str; 14] = [
     "grid",
     "kdtree",
+    "kdtree:build=sort",
+    "kdtree:build=sort,sorting=every-node",
+    "kdtree:build=min-max",
+    "kdtree:build=sort,search=ropes",
+    "kdtree:build=sort,push=off,search=ropes",
     "bvh",
     "bvh:max_leaf=3",
     "bvh:build=sweep,max_leaf=3",

@@ -1,9 +1,9 @@
 //! The bars of the traversals, as ratios of interleaved rounds in one run: `cargo bench --bench rays`.
 //!
 //! One frame of primary rays, 1024 squared: obvhs's own CPU traversal (medium build, precomputed triangles, hit or miss
-//! only) against `bvh-stack` of each builder, `bih` and `ploc-stack`, which also shade and store, as CPU twins and on
-//! the best Vulkan device. Rounds alternate in order; a ratio is the median of the rounds' ratios, with the interval
-//! that an exact sign test gives at about 95 %.
+//! only) against `bvh-stack` of each builder, `bih`, `ploc-stack` and kd-trees, which also shade and store, as CPU
+//! twins and on the best Vulkan device. Rounds alternate in order; a ratio is the median of the rounds' ratios, with
+//! the interval that an exact sign test gives at about 95 %.
 
 mod common;
 
@@ -26,13 +26,16 @@ use std::time::Instant;
 /// Milliseconds of one frame.
 type Contestant<'a> = (String, Box<dyn FnMut() -> f64 + 'a>);
 
-const STRUCTURES: [&str; 6] = [
+const STRUCTURES: [&str; 9] = [
     "bvh-stack",
     "bvh-stack:build=sweep,max_leaf=3",
     "bvh-stack:build=sweep,max_leaf=3,cull=off",
     "bvh-stack:build=spatial,max_leaf=3",
     "bih",
     "ploc-stack",
+    "kdtree:build=sort",
+    "kdtree:build=sort,search=stack",
+    "kdtree:build=sort,search=ropes",
 ];
 
 fn main() {

@@ -8,6 +8,7 @@
 use rtbench::Result;
 use rtbench::camera::CameraPath;
 use rtbench::scene::{self, FORMATS, Scene};
+use rtbench::workloads::trace::Selection;
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
@@ -20,6 +21,9 @@ static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| {
 
 /// The scene in which camera paths are evaluated.
 static ROOM: LazyLock<Scene> = LazyLock::new(|| scene::load("room").expect("a built-in scene"));
+
+/// The scene of which structures are built.
+static SMALL: LazyLock<Scene> = LazyLock::new(|| scene::load("hall:triangles=1000").expect("a built-in scene"));
 
 /// Memory in bytes that reading may take in addition to sixteen times the file's size.
 const BASE: u64 = 64 << 20;
@@ -52,6 +56,18 @@ pub fn scene(extension: &str, bytes: &[u8]) {
     let spec = if extension == "rtb" { path } else { format!("{path}:memory=64M") };
     if let Some(scene) = read(bytes.len(), || scene::load(&spec)) {
         scene.check().expect("a scene that is read is valid");
+    }
+}
+
+/// Reads these bytes as an element of `--structure`: what is read is written in one way, and builds of a small scene.
+pub fn structure(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    for selection in one_line(Selection::parse_all(text)).into_iter().flatten() {
+        let again = Selection::parse(&selection.full_name()).expect("what was written is read");
+        assert_eq!(again, selection);
+        if let Some(built) = one_line(selection.build(&SMALL, 1)) {
+            built.structure.validate(&SMALL).expect("a structure that is built is valid");
+        }
     }
 }
 

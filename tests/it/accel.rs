@@ -4,8 +4,10 @@
 mod bih;
 mod broken;
 mod degenerate;
+mod kdtree_sort;
 mod registry;
 mod scenes;
+mod selections;
 mod spatial;
 mod sweep;
 mod thesis;
@@ -18,7 +20,7 @@ use rtbench::workloads::trace::{Selection, Structure};
 use std::sync::Arc;
 
 /// Every builder, with options that lead through other code.
-pub const SELECTIONS: [&str; 34] = [
+pub const SELECTIONS: [&str; 42] = [
     "grid",
     "grid:factor=1",
     "grid:x=5",
@@ -30,6 +32,14 @@ pub const SELECTIONS: [&str; 34] = [
     "kdtree:max_depth=0",
     "kdtree:spread=cell,exact_below=256,small_leaf=0,max_depth=auto",
     "kdtree:small_leaf=0,thin=0,kt=0.1,bins=64,exact_below=8",
+    "kdtree:build=sort",
+    "kdtree:build=sort,sorting=every-node",
+    "kdtree:build=sort,kt=0.2,thin=0",
+    "kdtree:build=min-max",
+    "kdtree:build=min-max,bins=5,spread=cell",
+    "kdtree:search=ropes",
+    "kdtree:build=sort,search=ropes",
+    "kdtree:build=sort,push=off,search=ropes",
     "bvh",
     "bvh:bins=2,max_leaf=1",
     "bvh:bins=32,max_leaf=15",

@@ -132,8 +132,18 @@ fn no_registered_algorithm_and_no_kernel_file_is_left_out() {
     // Files that only options or other devices choose
     let optional = [
         "trace/intersect/moller_trumbore.wgsl",
+        "trace/kdtree/rope_nodes.wgsl",
+        "trace/kdtree/ropes.wgsl",
         "trace/kdtree/short_stack_private.wgsl",
         "trace/kdtree/short_stack_workgroup.wgsl",
+        "trace/staged/append.wgsl",
+        "trace/staged/bounce.wgsl",
+        "trace/staged/end.wgsl",
+        "trace/staged/list.wgsl",
+        "trace/staged/primary.wgsl",
+        "trace/staged/update_counted.wgsl",
+        "trace/staged/update_timed.wgsl",
+        "trace/kdtree/stack.wgsl",
         "trace/textures.wgsl",
     ];
     for (file, _) in kernels::FILES {

@@ -8,11 +8,11 @@ use rtbench::scene::{Light, Material};
 use rtbench::workloads::trace::backend::{Config, CountedPixel, Counters, Pixel};
 use rtbench::workloads::trace::bih::{BihNode, BihUniform};
 use rtbench::workloads::trace::brute::BruteUniform;
-use rtbench::workloads::trace::gpu::kernels::{self, Entry, Kernel};
-use rtbench::workloads::trace::gpu::{FrameUniform, TraceRay};
+use rtbench::workloads::trace::gpu::kernels::{self, Entry, Kernel, StagedPass};
+use rtbench::workloads::trace::gpu::{FrameUniform, TraceRay, WaitingPath};
 use rtbench::workloads::trace::grid::GridUniform;
 use rtbench::workloads::trace::grid::octants::Octant;
-use rtbench::workloads::trace::kdtree::KdTreeUniform;
+use rtbench::workloads::trace::kdtree::{KdTreeUniform, RopeLeaf};
 use rtbench::workloads::trace::{Method, Selection, algorithms};
 use std::mem::offset_of;
 
@@ -42,8 +42,9 @@ fn every_variant_is_valid() {
     let kernels = kernels::all();
     assert_eq!(
         kernels.len(),
-        kernels::methods().len() * 8 * 4,
-        "six render and two trace entries, two kinds of driver, buffers and textures"
+        (kernels::methods().len() * 8 + 4) * 4,
+        "six render and two trace entries, three passes instead of one where they are staged, timed and counting, two \
+         kinds of driver, buffers and textures"
     );
     for algorithm in algorithms() {
         let method = method(algorithm.name);
@@ -53,6 +54,8 @@ fn every_variant_is_valid() {
         "kdtree:memory=private",
         "kdtree:search=pushdown",
         "kdtree:search=restart",
+        "kdtree:search=stack",
+        "kdtree:search=ropes",
         "kdtree:stack=1",
         "kdtree:stack=32",
         "bvh:vote=original",
@@ -68,6 +71,7 @@ fn every_variant_is_valid() {
         "bvh-stack:build=spatial",
         "bvh-stack:build=spatial,cull=off",
         "bvh:build=spatial",
+        "bvh-stack:reflections=staged",
     ];
     for text in special {
         assert!(kernels.iter().any(|kernel| kernel.method == method(text)), "{text} is not checked");
@@ -157,7 +161,8 @@ fn struct_layouts_agree() {
             first_column,
             columns,
             height,
-            shadow_reach
+            shadow_reach,
+            part
         ]
     );
     same_layout!(module, "Grid", GridUniform, [bounds_min, cell_size, bounds_max, resolution, octants]);
@@ -170,6 +175,15 @@ fn struct_layouts_agree() {
     assert_eq!(span as usize, size_of::<CountedPixel>());
     assert_eq!(members.iter().find(|m| m.0 == "t").unwrap().1 as usize, offset_of!(CountedPixel, t));
     assert_eq!(members.iter().find(|m| m.0 == "counters").unwrap().1 as usize, offset_of!(CountedPixel, counters));
+    let staged = Kernel {
+        entry: Entry::Staged { config: Config::PSR, counting: false, pass: StagedPass::Bounce },
+        method: method("bvh-stack:reflections=staged"),
+        stack_size: 32,
+        software_threads: 0,
+        textures: false,
+    };
+    let module = &check(&assemble(&staged)).unwrap();
+    same_layout!(module, "Waiting", WaitingPath, [origin, pixel, direction, weight, colour]);
     let module = &render("bvh-stack", false);
     same_layout!(module, "Pixel", Pixel, [triangle, rgba]);
     let (span, members) = layout(module, "Node");
@@ -191,6 +205,11 @@ fn struct_layouts_agree() {
     same_layout!(module, "GivenRay", TraceRay, [origin, direction]);
     same_layout!(module, "KdTree", KdTreeUniform, [bounds_min, bounds_max]);
     same_layout!(&render("bih", false), "Bih", BihUniform, [bounds_min, bounds_max]);
+    // Rows of 16 bytes, of which kernels read whole ones
+    let rows =
+        [offset_of!(RopeLeaf, min), offset_of!(RopeLeaf, max), offset_of!(RopeLeaf, low), offset_of!(RopeLeaf, high)];
+    assert_eq!((rows, size_of::<RopeLeaf>()), ([0, 16, 32, 48], 64));
+    assert_eq!([offset_of!(RopeLeaf, first), offset_of!(RopeLeaf, count)], [12, 28]);
     same_layout!(&render("brute", false), "Brute", BruteUniform, [triangle_refs]);
 }
 

@@ -22,9 +22,11 @@ mod meshes; // closed meshes, and rays at their vertices and edges
 mod reference; // rays traced by Embree (needs RTBENCH_SCENES)
 mod report; // tables of any source in every format, parts of documents
 mod results; // journal, CSV and JSON agree; statistics; rays and hits
+mod ropes; // the kd-tree's ropes against its full stack, ray by ray
 mod scene; // readers and what breaks them, memory while loading, caches, procedural scenes, the catalogue
 mod schema; // JSON Schema of journals and run.json against the types and real files
 mod sources; // published numbers; tables, claims, figures and report from records
+mod staged; // frames of several passes against those of one
 mod support; // small scenes, random numbers, the GPU if there is one
 mod sweep; // the sweep loop on a device that breaks, presets, the plan
 mod toy; // a workload of a few lines on the harness

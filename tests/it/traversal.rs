@@ -81,7 +81,7 @@ fn names() -> Vec<&'static str> {
 }
 
 /// Ways to walk a structure other than each one's own.
-const OTHERS: [&str; 34] = [
+const OTHERS: [&str; 46] = [
     "kdtree:search=restart",
     "kdtree:search=pushdown",
     "kdtree:stack=1",
@@ -89,6 +89,13 @@ const OTHERS: [&str; 34] = [
     "kdtree:stack=2",
     "kdtree:stack=5,memory=private",
     "kdtree:stack=32",
+    "kdtree:search=stack",
+    "kdtree:search=ropes",
+    "kdtree:push=off,search=ropes",
+    "kdtree:thin=0,search=stack",
+    "kdtree:thin=0,search=ropes",
+    "kdtree:build=sort,search=ropes",
+    "kdtree:build=min-max,search=ropes",
     "kdtree:thin=0,search=restart",
     "kdtree:thin=0,stack=1",
     "bvh:vote=original",
@@ -106,14 +113,20 @@ const OTHERS: [&str; 34] = [
     "grid:group=32x1,tiles=3",
     "bvh-stack:group=16x16,checks=on",
     "bvh:tiles=2",
+    // Frames of several passes
+    "bvh-stack:reflections=staged",
+    "kdtree:reflections=staged,tiles=2",
+    "grid:reflections=staged,group=16x16,fetch=buffers",
     // Scene and structure in both kinds of memory, whichever a device would take by itself
     "grid:fetch=buffers",
     "kdtree:fetch=buffers",
     "bvh:fetch=buffers",
     "bvh-stack:fetch=buffers",
     "bih:fetch=buffers",
+    "kdtree:search=ropes,fetch=buffers",
     "grid:fetch=textures",
     "kdtree:fetch=textures",
+    "kdtree:search=ropes,fetch=textures",
     "bvh:fetch=textures",
     "bvh-stack:fetch=textures",
     "bih:fetch=textures",
@@ -175,7 +188,7 @@ proptest! {
     }
 }
 
-fn view(lights: usize) -> View {
+pub fn view(lights: usize) -> View {
     let direction = Vec3::new(0.3, -0.35, -1.0).normalize();
     let lights = (0..lights).map(|i| {
         let angle = i as f32 * 2.1;
@@ -187,7 +200,7 @@ fn view(lights: usize) -> View {
     }
 }
 
-fn shiny(mut scene: Scene) -> Scene {
+pub fn shiny(mut scene: Scene) -> Scene {
     scene.materials.push(Material::matt(Vec3::new(0.3, 0.5, 0.8)).shiny(Vec3::splat(0.5), 30.0, 0.6));
     for (index, triangle) in scene.triangles.iter_mut().enumerate() {
         triangle.material = (index % 3 == 0) as u32;
@@ -195,7 +208,7 @@ fn shiny(mut scene: Scene) -> Scene {
     scene
 }
 
-fn counted(
+pub fn counted(
     backend: &dyn Backend,
     scene: &Scene,
     name: &str,
@@ -212,7 +225,7 @@ fn counted(
 }
 
 /// Sizes that are no multiple of a work-group's eight: the last groups hang over the edge.
-const SIZE: Size = Size { width: 75, height: 43 };
+pub const SIZE: Size = Size { width: 75, height: 43 };
 
 #[test]
 fn timed_and_counting_twins_make_the_same_picture() {

@@ -59,6 +59,20 @@ impl VulkanDevice {
         self.buffer(what, bytes, usage)
     }
 
+    /// A buffer with contents that passes change: numbers of groups of indirect dispatches among them.
+    ///
+    /// # Errors
+    /// [`Error::Device`] if it does not fit the device's limits.
+    pub fn indirect<T: NoUninit>(&self, what: &str, contents: &[T]) -> Result<Buffer> {
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT;
+        self.filled(what, bytemuck::cast_slice(contents), usage)
+    }
+
+    /// The most bytes that can be bound as one buffer.
+    pub fn max_binding(&self) -> u64 {
+        self.limits.max_storage_buffer_binding_size.min(self.limits.max_buffer_size)
+    }
+
     /// Copies all bytes of a buffer to the begin of another.
     pub fn copy(&self, from: &Buffer, to: &Buffer) {
         let mut encoder = self.device.create_command_encoder(&Default::default());
@@ -89,7 +103,7 @@ impl VulkanDevice {
     /// # Errors
     /// [`Error::Refused`].
     pub fn check_size(&self, what: &str, bytes: u64, hint: &str) -> Result<()> {
-        let limit = self.limits.max_storage_buffer_binding_size.min(self.limits.max_buffer_size);
+        let limit = self.max_binding();
         if bytes <= limit {
             return Ok(());
         }

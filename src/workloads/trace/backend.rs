@@ -234,9 +234,14 @@ pub trait Prepared {
     /// anything is hit (`triangle` and `t` are then 0).
     fn trace(&mut self, rays: &[GivenRay], any_hit: bool) -> Result<Vec<Hit>>;
 
-    /// The identity of the timed kernel; `None` for the twins.
-    fn kernel(&self, _config: Config) -> Result<Option<KernelInfo>> {
-        Ok(None)
+    /// The identities of the timed kernels, one for each pass of a frame; none for the twins.
+    fn kernels(&self, _config: Config) -> Result<Vec<KernelInfo>> {
+        Ok(Vec::new())
+    }
+
+    /// The stages of a timed frame, where each has a time of its own.
+    fn stages(&self, _config: Config) -> Vec<&'static str> {
+        Vec::new()
     }
 
     /// Bytes allocated on the device for geometry (vertices, materials, lights) and for the structure (nodes and

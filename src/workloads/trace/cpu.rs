@@ -8,8 +8,10 @@ use crate::scene::Scene;
 use crate::workloads::trace::backend::*;
 use crate::workloads::trace::count::{Count, CountOff};
 use crate::workloads::trace::given::trace_group;
-use crate::workloads::trace::method::Group;
-use crate::workloads::trace::render::Frame;
+use crate::workloads::trace::method::{Group, Reflections};
+use crate::workloads::trace::path::Frame;
+use crate::workloads::trace::render::render_group;
+use crate::workloads::trace::staged::{Waiting, bounce_group, primary_group};
 use crate::workloads::trace::traverse::{GROUP, STACK_SIZE, Traverse, Triangles};
 use crate::workloads::trace::{Method, Structure, Traversal};
 use bytemuck::Zeroable;
@@ -83,6 +85,20 @@ impl Backend for CpuDevice {
     }
 }
 
+/// Rows of an image.
+struct Strip<'a, P> {
+    /// The first one.
+    top: u32,
+    width: u32,
+    pixels: &'a mut [P],
+}
+
+impl<P> Strip<'_, P> {
+    fn set(&mut self, column: u32, row: u32, pixel: P) {
+        self.pixels[((row - self.top) * self.width + column) as usize] = pixel;
+    }
+}
+
 struct CpuPrepared<'a, T> {
     device: &'a CpuDevice,
     scene: &'a Scene,
@@ -96,7 +112,7 @@ struct CpuPrepared<'a, T> {
 }
 
 impl<'a, T: Traverse> CpuPrepared<'a, T> {
-    /// Renders a tile into `out`, which holds its rows in full width; whole groups of rows at a time, in parallel.
+    /// Renders a tile into `out`, which holds its rows in full width.
     fn render<C: Count, P: Copy + Send>(
         &self,
         frame: &Frame,
@@ -104,18 +120,60 @@ impl<'a, T: Traverse> CpuPrepared<'a, T> {
         out: &mut [P],
         convert: impl Fn(CountedPixel) -> P + Sync,
     ) {
-        let width = frame.size.width;
-        let strip = (width * frame.group.height) as usize;
-        self.device.pool().install(|| {
-            out.par_chunks_mut(strip).enumerate().for_each(|(index, pixels)| {
-                let top = tile.row + index as u32 * frame.group.height;
-                for column in (tile.column..tile.column + tile.columns).step_by(frame.group.width as usize) {
-                    frame.render_group::<T, C>(&self.traversal, (column, top), |x, y, pixel| {
-                        pixels[((y - top) * width + x) as usize] = convert(pixel);
-                    });
-                }
-            });
+        self.device.pool().install(|| match self.method.reflections {
+            Reflections::Fused => {
+                self.groups(frame, tile, out, |corner, pixels| {
+                    render_group::<T, C>(frame, &self.traversal, corner, |x, y, p| pixels.set(x, y, convert(p)));
+                });
+            }
+            Reflections::Staged => self.staged::<C, P>(frame, tile, out, &convert),
         });
+    }
+
+    /// Calls `group` for the top left pixel of every work-group of a tile, rows of groups in parallel, each with its
+    /// rows of `out`; what it returns, in the order of rows.
+    fn groups<P: Send, R: Send>(
+        &self,
+        frame: &Frame,
+        tile: Tile,
+        out: &mut [P],
+        group: impl Fn((u32, u32), &mut Strip<P>) -> R + Sync,
+    ) -> Vec<R> {
+        let width = frame.size.width;
+        let strips = out.par_chunks_mut((width * frame.group.height) as usize).enumerate();
+        let strips = strips.map(|(index, pixels)| {
+            let mut strip = Strip { top: tile.row + index as u32 * frame.group.height, width, pixels };
+            let columns = (tile.column..tile.column + tile.columns).step_by(frame.group.width as usize);
+            columns.map(|column| group((column, strip.top), &mut strip)).collect::<Vec<_>>()
+        });
+        strips.collect::<Vec<_>>().into_iter().flatten().collect()
+    }
+
+    /// Pass by pass.
+    fn staged<C: Count, P: Copy + Send>(
+        &self,
+        frame: &Frame,
+        tile: Tile,
+        out: &mut [P],
+        convert: &(impl Fn(CountedPixel) -> P + Sync),
+    ) {
+        let lists = self.groups(frame, tile, out, |corner, pixels| {
+            let mut list = Vec::new();
+            primary_group::<T, C>(frame, &self.traversal, corner, &mut list, |x, y, pixel| {
+                pixels.set(x, y, convert(pixel));
+            });
+            list
+        });
+        let mut list = lists.concat();
+        for _ in 0..frame.config.bounces() {
+            let passed = list.par_chunks(GROUP).map(|paths| bounce_group::<T, C>(frame, &self.traversal, paths));
+            let (pixels, next): (Vec<Vec<CountedPixel>>, Vec<Vec<Waiting<C>>>) = passed.unzip();
+            for (path, pixel) in list.iter().zip(pixels.into_iter().flatten()) {
+                let (x, y) = path.place;
+                out[((y - tile.row) * frame.size.width + x) as usize] = convert(pixel);
+            }
+            list = next.concat();
+        }
     }
 
     fn frame<'f>(&self, config: Config, view: &'f View, size: Size) -> Frame<'f>

@@ -26,6 +26,16 @@ pub enum Pattern {
     Four,
 }
 
+/// How the passes of a frame follow reflections.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Reflections {
+    /// One pass: each invocation follows the path of its pixel to its end.
+    #[default]
+    Fused,
+    /// One pass for all primary rays, then one for each reflection over a list of the pixels that reflect.
+    Staged,
+}
+
 /// Where a kernel reads the scene and the structure from; ignored by CPU twins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Fetch {
@@ -89,6 +99,8 @@ pub struct Method {
     pub pattern: Pattern,
     /// Ray/triangle test.
     pub intersect: TriangleTest,
+    /// Passes of a frame.
+    pub reflections: Reflections,
     /// A work-group's pixels.
     pub group: Group,
     /// The image is split into so many tiles on each side, which are rendered one after another.
@@ -116,6 +128,11 @@ impl Method {
     /// The same rays by another traversal.
     pub fn by(self, traversal: &'static Traversal, parameters: Parameters) -> Method {
         Method { traversal, parameters, ..self }
+    }
+
+    /// True if a frame with this many reflections takes several passes.
+    pub fn is_staged(self, bounces: u32) -> bool {
+        self.reflections == Reflections::Staged && bounces > 0
     }
 
     /// True if a device must agree with the reference to the bit.

@@ -142,6 +142,14 @@ pub const COMMON_OPTIONS: &[OptionInfo] = &[
     ),
     OptionInfo::new(
         Axis::Device,
+        "reflections",
+        "fused",
+        "passes of a frame under PSR: one, or one for primary rays and one for each reflection over a list of pixels",
+        Kind::Word(&["fused", "staged"]),
+    )
+    .idle_if(goes_together),
+    OptionInfo::new(
+        Axis::Device,
         "checks",
         "off",
         "compile the kernel with bounds checks and loop bounds",
@@ -155,6 +163,10 @@ pub const COMMON_OPTIONS: &[OptionInfo] = &[
         Kind::Word(&["auto", "buffers", "textures"]),
     ),
 ];
+
+fn goes_together(s: &Selection) -> Option<String> {
+    s.method().traversal.cooperative.then(|| format!("the rays of a work-group of {} go together", s.name()))
+}
 
 impl Kind {
     /// The value in its one spelling, or what would be one.

@@ -128,7 +128,12 @@ impl Run for TraceRun<'_> {
     }
 
     fn kernels(&self, case: &Case) -> Result<Vec<KernelInfo>> {
-        Ok(self.tracer.kernel(TraceCase::parse(case)?.config)?.into_iter().collect())
+        self.tracer.kernels(TraceCase::parse(case)?.config)
+    }
+
+    fn stages(&self, case: &Case) -> Vec<String> {
+        let stages = TraceCase::parse(case).map(|case| self.tracer.stages(case.config)).unwrap_or_default();
+        stages.into_iter().map(str::to_owned).collect()
     }
 
     fn verify(&mut self, case: &Case) -> Result<Verdict> {

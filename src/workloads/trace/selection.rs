@@ -5,7 +5,7 @@ use crate::scene::Scene;
 use crate::threads;
 use crate::workloads::trace::algorithm::{Algorithm, Made};
 use crate::workloads::trace::intersect::TriangleTest;
-use crate::workloads::trace::method::{Fetch, Group, Method, Pattern, ShadowRays};
+use crate::workloads::trace::method::{Fetch, Group, Method, Pattern, Reflections, ShadowRays};
 use crate::workloads::trace::options::{Axis, OptionInfo};
 use crate::workloads::trace::registry::algorithms;
 use crate::workloads::trace::structure::Structure;
@@ -164,6 +164,10 @@ impl Selection {
             intersect: match self.value("intersect") {
                 "moller-trumbore" => TriangleTest::MollerTrumbore,
                 _ => TriangleTest::Watertight,
+            },
+            reflections: match self.value("reflections") {
+                "staged" => Reflections::Staged,
+                _ => Reflections::Fused,
             },
             group,
             tiles: self.count("tiles").unwrap_or(1),

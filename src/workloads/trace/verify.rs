@@ -20,7 +20,7 @@ use crate::workloads::trace::backend::{Backend, Config, CountedPixel, GivenRay, 
 use crate::workloads::trace::brute;
 use crate::workloads::trace::intersect::TriangleTest;
 use crate::workloads::trace::method::Rays;
-use crate::workloads::trace::{Agreement, Built, CpuBackend, Method, Parameters, Structure, bvh, render};
+use crate::workloads::trace::{Agreement, Built, CpuBackend, Method, Parameters, Structure, bvh, path};
 use std::sync::Arc;
 
 /// A colour channel may differ by this many of 255 levels: `pow` of both sides is good to a few units in the last
@@ -189,7 +189,7 @@ impl Verifier {
             return Ok(0);
         }
         let turned = |pixel: &usize| {
-            let ray = render::primary_ray(method, view, size, *pixel);
+            let ray = path::primary_ray(method, view, size, *pixel);
             let (x, y) = ray.direction.any_orthonormal_pair();
             let turns =
                 [(0.0, 1.0), (1.0, 1.0), (1.0, 0.0), (1.0, -1.0), (0.0, -1.0), (-1.0, -1.0), (-1.0, 0.0), (-1.0, 1.0)];
@@ -248,7 +248,7 @@ impl Verifier {
         let count = (BRUTE_TESTS / self.scene.triangles.len().max(1)).max(64).min(size.pixels());
         let chosen: Vec<usize> =
             (0..count).map(|i| (i as u64 * size.pixels() as u64 / count as u64) as usize).collect();
-        let given: Vec<GivenRay> = chosen.iter().map(|&pixel| render::primary_ray(method, view, size, pixel)).collect();
+        let given: Vec<GivenRay> = chosen.iter().map(|&pixel| path::primary_ray(method, view, size, pixel)).collect();
         let hits = self
             .cpu
             .prepare(&self.scene, &self.brute, method.by(&brute::scan::SCAN, Parameters::NONE))?

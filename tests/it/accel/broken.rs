@@ -7,7 +7,7 @@ use rtbench::workloads::trace::bih::{Bih, BihNode};
 use rtbench::workloads::trace::brute::Brute;
 use rtbench::workloads::trace::bvh::{Bvh, BvhNode};
 use rtbench::workloads::trace::grid::Grid;
-use rtbench::workloads::trace::kdtree::{KdNode, KdTree};
+use rtbench::workloads::trace::kdtree::{KdNode, KdTree, NO_ROPE, RopeTree};
 
 fn scene() -> Scene {
     scenes::random("good", 400, 1.0, 0.1, 9)
@@ -219,6 +219,78 @@ fn in_a_kdtree() {
         ("wrong bounds", "bounds", &|t| t.bounds.min.y -= 1.0),
     ];
     assert_noticed(&good, damages);
+}
+
+/// A leaf, an axis and a side (lower is 0) that a rope is of.
+type Place = (usize, usize, usize);
+
+fn rope(tree: &mut RopeTree, (leaf, axis, side): Place) -> &mut u32 {
+    let leaf = &mut tree.leaves_mut()[leaf];
+    if side == 0 { &mut leaf.low[axis] } else { &mut leaf.high[axis] }
+}
+
+/// All ropes for which something holds.
+fn ropes(tree: &RopeTree, mut holds: impl FnMut(Place, u32) -> bool) -> Vec<Place> {
+    let mut tree = tree.clone();
+    let places = (0..tree.leaves().len()).flat_map(|leaf| (0..6).map(move |face| (leaf, face % 3, face / 3)));
+    places.filter(|&place| holds(place, *rope(&mut tree, place))).collect()
+}
+
+#[test]
+fn in_ropes() {
+    let good: RopeTree = build_as("kdtree:build=sort,search=ropes", &scene());
+    let tied: RopeTree = build_as("kdtree:build=sort,push=off,search=ropes", &scene());
+    let (mut other, last) = (tied.clone(), good.tree.nodes.len() as u32);
+    let pushed = ropes(&good, |place, target| target != *rope(&mut other, place));
+    let there = ropes(&good, |_, target| target != NO_ROPE);
+    let outside = ropes(&good, |_, target| target == NO_ROPE)[3];
+    let (some, high) = (there[there.len() / 2], pushed[pushed.len() / 2]);
+    let both = there.iter().find(|&&(leaf, axis, side)| side == 0 && there.contains(&(leaf, axis, 1))).unwrap();
+    let full = good.leaves().iter().position(|leaf| leaf.count > 0).unwrap();
+    let leaf_node = good.tree.nodes.iter().position(|node| node.is_leaf()).unwrap();
+    let damages: &[Damage<RopeTree>] = &[
+        ("swapped ropes", "lies behind", &|t| {
+            let leaf = &mut t.leaves_mut()[both.0];
+            std::mem::swap(&mut leaf.low[both.1], &mut leaf.high[both.1]);
+        }),
+        ("a rope that ends too high", "does not cut the face", &|t| *rope(t, high) = *rope(&mut tied.clone(), high)),
+        ("a missing rope", "is missing", &|t| *rope(t, some) = NO_ROPE),
+        ("a rope out of the root", "leads out of the root", &|t| *rope(t, outside) = 0),
+        ("a rope to nowhere", "behind the last one", &|t| *rope(t, some) = last),
+        ("a rope to the root", "which begins at", &|t| *rope(t, some) = 0),
+        ("a box that is too small", "have a volume of", &|t| t.leaves_mut()[full].max[1] -= 0.01),
+        ("a NaN in a box", "have a volume of", &|t| t.leaves_mut()[full].min[1] = f32::NAN),
+        ("a box that is off by a bit", "its cell is", &|t| {
+            let max = &mut t.leaves_mut()[full].max[2];
+            *max = max.next_up();
+        }),
+        ("a triangle too many", "triangle references from", &|t| t.leaves_mut()[full].count += 1),
+        ("other triangles", "triangle references from", &|t| t.leaves_mut()[full].first += 1),
+        ("a node with the rows of another leaf", "its own begin at", &|t| {
+            t.rows[leaf_node / 2][leaf_node % 2 * 2] += 4;
+        }),
+        ("another plane in the rows", "in the tree", &|t| t.rows[0][0] ^= 1),
+        ("a row too few", "rows of nodes and leaves", &|t| {
+            t.rows.pop();
+        }),
+        ("a tree that is wrong itself", "depth is", &|t| t.tree.depth += 1),
+        ("ropes that should not be pushed down", "below one that touches", &|t| t.pushed = false),
+    ];
+    assert_noticed(&good, damages);
+    tied.validate(&scene()).expect("good before it is broken");
+    // One step too low: beside the face, or over a part of it
+    let low = |&place: &Place| {
+        let mut broken = good.clone();
+        let target = *rope(&mut broken, place);
+        let node = good.tree.nodes[target as usize];
+        *rope(&mut broken, place) = [target + 1, node.right()][place.0 % 2];
+        broken.validate(&scene()).expect_err("a rope that ends too low was not noticed")
+    };
+    let inner = |_, target: u32| target != NO_ROPE && !good.tree.nodes[target as usize].is_leaf();
+    let found: Vec<String> = ropes(&good, inner).iter().take(60).map(low).collect();
+    for words in ["lies behind", "does not cover the face"] {
+        assert!(found.iter().any(|why| why.contains(words)), "no rope that ends too low '{words}': {found:?}");
+    }
 }
 
 #[test]

@@ -25,6 +25,8 @@ fn names_and_traversals() {
     assert_eq!(method("bvh-stack").traversal, &bvh::stack::STACK);
     assert_eq!(method("ploc-stack").traversal, &bvh::stack::STACK);
     assert_eq!(method("kdtree").traversal, &kdtree::search::SEARCH);
+    assert_eq!(method("kdtree:search=stack").traversal, &kdtree::stack::STACK);
+    assert_eq!(method("kdtree:search=ropes").traversal, &kdtree::ropes::ROPES);
     let search = |text| {
         let parameters = method(text).parameters;
         (parameters.word("SHORT_STACK"), parameters.flag("PUSHDOWN"), parameters.flag("PRIVATE_STACK"))
@@ -76,6 +78,21 @@ fn variants_are_canonical() {
     }
 }
 
+/// Names that presets and tables of the source `rt2` have.
+#[test]
+fn variants_of_kd_trees_name_build_options_first() {
+    for variant in [
+        "build=sort,search=stack",
+        "build=sort,search=ropes",
+        "build=sort,push=off,search=ropes",
+        "build=min-max,search=stack",
+        "build=sort,sorting=every-node,search=stack",
+    ] {
+        let reversed = variant.rsplit(',').collect::<Vec<_>>().join(",");
+        assert_eq!(selection(&format!("kdtree:{reversed}")).variant(), variant);
+    }
+}
+
 /// The four axes apart; the variant lists all in the table's order.
 #[test]
 fn options_are_four_axes() {
@@ -106,6 +123,18 @@ fn an_option_without_effect_is_refused() {
     for (text, why) in [
         ("kdtree:search=restart,stack=8", "stack has no effect: search="),
         ("kdtree:memory=private,search=pushdown", "memory has no effect: search="),
+        ("kdtree:search=stack,stack=8", "stack has no effect: search="),
+        ("kdtree:search=ropes,memory=private", "memory has no effect: search="),
+        ("kdtree:push=off", "push has no effect: search=short-stack"),
+        ("kdtree:push=off,search=stack", "push has no effect: search=stack"),
+        ("kdtree:sorting=every-node", "sorting has no effect: build=hybrid"),
+        ("kdtree:build=min-max,sorting=every-node", "sorting has no effect: build=min-max"),
+        ("kdtree:build=sort,bins=8", "bins has no effect: build=sort"),
+        ("kdtree:build=sort,spread=cell", "spread has no effect: build=sort"),
+        ("kdtree:build=sort,exact_below=8", "exact_below has no effect: build=sort"),
+        ("kdtree:build=min-max,exact_below=8", "exact_below has no effect: build=min-max"),
+        ("kdtree:build=sort,small_leaf=8", "small_leaf has no effect: build=sort"),
+        ("kdtree:build=min-max,max_depth=8", "max_depth has no effect: build=min-max"),
         ("grid:factor=2.5,z=7", "factor has no effect: z"),
         ("bvh:kt=inf,ki=3", "ki has no effect: costs"),
         ("bvh:build=sweep,bins=8", "bins has no effect: build=sweep"),
@@ -134,6 +163,8 @@ fn an_option_without_effect_is_refused() {
 fn equal_trees_are_shared() {
     assert_eq!(selection("bvh:bins=8").build_key(), selection("bvh-stack:bins=8").build_key());
     assert_eq!(selection("kdtree").build_key(), selection("kdtree:search=restart,tiles=3").build_key());
+    assert_eq!(selection("kdtree").build_key(), selection("kdtree:search=stack").build_key());
+    assert_ne!(selection("kdtree").build_key(), selection("kdtree:search=ropes").build_key());
     assert_eq!(selection("grid:x=9").build_key(), selection("grid-coop:x=9").build_key());
     let mut keys: Vec<String> = SELECTIONS.map(|s| selection(s).build_key()).to_vec();
     keys.sort();

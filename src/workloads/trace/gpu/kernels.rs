@@ -7,7 +7,7 @@ use crate::math;
 use crate::workloads::trace::backend::Config;
 use crate::workloads::trace::intersect::{TriangleTest, moller_trumbore};
 use crate::workloads::trace::method::{Pattern, ShadowRays};
-use crate::workloads::trace::{Axis, COMMON_OPTIONS, Method, Parameter, Selection, algorithms, count};
+use crate::workloads::trace::{Axis, COMMON_OPTIONS, Method, OptionInfo, Parameter, Selection, algorithms, count};
 use std::sync::LazyLock;
 
 // FILES: every file of `kernels/` (written by `build/main.rs`)
@@ -36,11 +36,39 @@ pub enum Entry {
         /// With counters, or timed.
         counting: bool,
     },
+    /// A pass of a staged frame: `trace/staged/primary.wgsl`, `trace/staged/bounce.wgsl`.
+    Staged {
+        /// Ray configuration.
+        config: Config,
+        /// With counters, or timed.
+        counting: bool,
+        /// Which pass.
+        pass: StagedPass,
+    },
     /// `trace/given.wgsl`.
     Trace {
         /// Any hit instead of the nearest one.
         any_hit: bool,
     },
+}
+
+/// A pass of a staged frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum StagedPass {
+    /// All primary rays; makes the first list.
+    Primary,
+    /// Reflected rays for a list; makes the next one.
+    Bounce,
+    /// Reflected rays for the last list.
+    LastBounce,
+}
+
+impl StagedPass {
+    /// The passes of a frame, in their order.
+    pub fn all(config: Config) -> Vec<StagedPass> {
+        let bounce = |bounce| if bounce == config.bounces() { StagedPass::LastBounce } else { StagedPass::Bounce };
+        std::iter::once(StagedPass::Primary).chain((1..=config.bounces()).map(bounce)).collect()
+    }
 }
 
 /// One kernel variant.
@@ -63,6 +91,9 @@ impl Entry {
     fn label(self) -> String {
         match self {
             Entry::Render { config, counting } => format!("{config:?}{}", if counting { " counting" } else { "" }),
+            Entry::Staged { config, counting, pass } => {
+                format!("{config:?} {pass:?}{}", if counting { " counting" } else { "" })
+            }
             Entry::Trace { any_hit } => format!("trace{}", if any_hit { " any hit" } else { "" }),
         }
     }
@@ -88,6 +119,8 @@ impl Kernel {
     pub fn assemble(&self) -> Result<Source, String> {
         let (entry, counting) = match self.entry {
             Entry::Render { counting, .. } => ("trace/render.wgsl", counting),
+            Entry::Staged { counting, pass: StagedPass::Primary, .. } => ("trace/staged/primary.wgsl", counting),
+            Entry::Staged { counting, .. } => ("trace/staged/bounce.wgsl", counting),
             Entry::Trace { .. } => ("trace/given.wgsl", false),
         };
         let intersect = match self.method.intersect {
@@ -101,6 +134,16 @@ impl Kernel {
             ("counting", if counting { COUNT_ON } else { COUNT_OFF }),
             ("store", if counting { "trace/store_counted.wgsl" } else { "trace/store_timed.wgsl" }),
         ];
+        if let Entry::Staged { counting, pass, .. } = self.entry {
+            let is_last = pass == StagedPass::LastBounce;
+            slots.extend([
+                ("append", if is_last { "trace/staged/end.wgsl" } else { "trace/staged/append.wgsl" }),
+                (
+                    "update",
+                    if counting { "trace/staged/update_counted.wgsl" } else { "trace/staged/update_timed.wgsl" },
+                ),
+            ]);
+        }
         slots.extend((self.method.traversal.slots)(&self.method.parameters));
         assemble(files(), entry, &slots, self.constants())
     }
@@ -108,7 +151,7 @@ impl Kernel {
     /// The bindings of the entry file; those that a traversal does not use are bound as well.
     pub(super) fn layout(&self) -> Vec<Binding> {
         let input = |texel| ReadBuffer::kind(self.textures, texel);
-        let render = matches!(self.entry, Entry::Render { .. });
+        let render = matches!(self.entry, Entry::Render { .. } | Entry::Staged { .. });
         let mut layout = vec![
             Binding::new(0, if render { BindingKind::MovingUniform } else { BindingKind::Uniform }),
             Binding::new(1, input(Texel::Bytes16)),
@@ -120,6 +163,14 @@ impl Kernel {
         ];
         if render {
             layout.extend([Binding::new(4, BindingKind::Read), Binding::new(5, BindingKind::Read)]);
+        }
+        if let Entry::Staged { pass, .. } = self.entry {
+            if pass != StagedPass::LastBounce {
+                layout.extend([9, 10].map(|number| Binding::new(number, BindingKind::ReadWrite)));
+            }
+            if pass != StagedPass::Primary {
+                layout.extend([11, 12].map(|number| Binding::new(number, BindingKind::Read)));
+            }
         }
         layout
     }
@@ -147,7 +198,7 @@ impl Kernel {
             }
         }
         match self.entry {
-            Entry::Render { config, .. } => {
+            Entry::Render { config, .. } | Entry::Staged { config, .. } => {
                 constants.flag("SHADOWS", config.shadows());
                 constants.flag("TO_LIGHT", self.method.shadows == ShadowRays::ToLight);
                 constants.flag("FOUR_RAYS", self.method.pattern == Pattern::Four);
@@ -177,17 +228,24 @@ pub fn methods() -> Vec<Method> {
     }
     // What a traversal does otherwise in trees with clipped boxes
     ["bvh:build=spatial", "bvh-stack:build=spatial", "bvh-stack:build=spatial,cull=off"].into_iter().for_each(&mut add);
-    for option in COMMON_OPTIONS.iter().filter(|option| option.axis == Axis::Rays) {
+    let of_kernels = |option: &&OptionInfo| option.axis == Axis::Rays || option.key == "reflections";
+    for option in COMMON_OPTIONS.iter().filter(of_kernels) {
         option.examples().iter().for_each(|value| add(&format!("bvh-stack:{}={value}", option.key)));
     }
     methods
 }
 
-/// Every entry file with every set of its constants.
-fn entries() -> Vec<Entry> {
+/// Every entry file that a method uses, with every set of its constants.
+fn entries(method: Method) -> Vec<Entry> {
     let mut entries: Vec<Entry> = [false, true].map(|any_hit| Entry::Trace { any_hit }).to_vec();
     for config in Config::ALL {
-        entries.extend([false, true].map(|counting| Entry::Render { config, counting }));
+        if method.is_staged(config.bounces()) {
+            let passes = StagedPass::all(config).into_iter();
+            let of = |pass| [false, true].map(|counting| Entry::Staged { config, counting, pass });
+            entries.extend(passes.flat_map(of));
+        } else {
+            entries.extend([false, true].map(|counting| Entry::Render { config, counting }));
+        }
     }
     entries
 }
@@ -206,7 +264,7 @@ pub fn defaults() -> Result<Vec<(String, Source)>> {
             continue;
         }
         methods.push(method);
-        for entry in entries() {
+        for entry in entries(method) {
             let kernel = Kernel { entry, method, stack_size: 32, software_threads: 0, textures: false };
             let source = kernel.assemble().map_err(Error::Device)?;
             defaults.push((format!("{} {}", algorithm.name, entry.label()), source));
@@ -217,10 +275,9 @@ pub fn defaults() -> Result<Vec<(String, Source)>> {
 
 /// All variants that the program can run, with a stack of 32, for the static checks.
 pub fn all() -> Vec<Kernel> {
-    let entries = entries();
     let mut all = Vec::new();
     for method in methods() {
-        for &entry in &entries {
+        for entry in entries(method) {
             for textures in [false, true] {
                 let kernel = |software_threads| Kernel { entry, method, stack_size: 32, software_threads, textures };
                 all.extend([0, 2].map(kernel));

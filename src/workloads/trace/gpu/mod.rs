@@ -3,10 +3,11 @@
 pub mod kernels;
 mod path;
 mod prepared;
+mod rendering;
 mod shared;
 mod upload;
 
-pub use shared::{FrameUniform, TraceRay};
+pub use shared::{FrameUniform, TraceRay, WaitingPath};
 
 use crate::device::{DeviceInfo, VulkanDevice};
 use crate::error::Result;

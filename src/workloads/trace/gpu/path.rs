@@ -1,7 +1,7 @@
 //! Timing a path frame by frame, with frames split as far as a watchdog asks for it.
 
-use super::kernels::Entry;
-use super::prepared::{GpuPrepared, Part};
+use super::prepared::GpuPrepared;
+use super::rendering::Part;
 use crate::camera::View;
 use crate::device::VulkanDevice;
 use crate::device::vulkan::Buffer;
@@ -42,15 +42,15 @@ impl GpuPrepared<'_> {
             return Ok(Vec::new());
         };
         let parts = self.timing_parts(config, first_view, size)?;
-        let pipeline = self.compiled(Entry::Render { config, counting: false })?;
+        let pipelines = self.pipelines(config, false)?;
         let output = self.image_buffer(size)?;
         let mut times = Vec::with_capacity(views.len());
         for views in views.chunks((MAX_DISPATCHES / parts.len()).max(1)) {
-            let inputs = self.frame_inputs(views, size, &parts)?;
-            let bindings = self.render_bindings(&pipeline, &inputs, &output);
-            times.extend(self.device.run_frames(&inputs.frames(&pipeline, &bindings), interrupted)?);
+            let rendering = self.rendering(&pipelines, (views, size), &parts, &output)?;
+            times.extend(self.device.run_frames(&rendering.frames(), interrupted)?);
         }
-        self.last_frame = Some(LastFrame { output, pixels: size.pixels(), dispatches: parts.len() as u32 });
+        let dispatches = (parts.len() * pipelines.len()) as u32;
+        self.last_frame = Some(LastFrame { output, pixels: size.pixels(), dispatches });
         Ok(times)
     }
 
@@ -70,14 +70,13 @@ impl GpuPrepared<'_> {
         if let Some(&bands) = self.bands.get(&(config, size)) {
             return Ok(bands);
         }
-        let pipeline = self.compiled(Entry::Render { config, counting: false })?;
+        let pipelines = self.pipelines(config, false)?;
         let output = self.image_buffer(size)?;
         let narrow = self.parts(size, 1, size.height.div_ceil(64));
-        let inputs = self.frame_inputs(std::slice::from_ref(view), size, &narrow)?;
-        let bindings = self.render_bindings(&pipeline, &inputs, &output);
+        let rendering = self.rendering(&pipelines, (std::slice::from_ref(view), size), &narrow, &output)?;
         // Narrow bands together take longer than the whole, never shorter: they leave more of the device idle
         let mut time = Duration::ZERO;
-        for frame in inputs.frames(&pipeline, &bindings) {
+        for frame in rendering.frames() {
             time += self.device.run(&frame)?;
         }
         let bands = bands_for(time, self.device.options().max_dispatch);

@@ -25,8 +25,26 @@ pub struct FrameUniform {
     pub columns: u32,
     pub height: u32,
     pub shadow_reach: f32,
-    pub pad: [u32; 2],
+    pub part: u32,
+    pub pad: u32,
 }
+
+/// `Waiting` of `kernels/trace/staged/list.wgsl`: a path that goes on in a mirror.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+#[allow(missing_docs)]
+pub struct WaitingPath {
+    pub origin: Vec3,
+    pub pixel: u32,
+    pub direction: Vec3,
+    pub weight: f32,
+    pub colour: Vec3,
+    pub pad: u32,
+}
+
+/// `Length` of `kernels/trace/staged/list.wgsl` for an empty list: no work-groups, one in the other dimensions, no
+/// path.
+pub const LENGTH: [u32; 4] = [0, 1, 1, 0];
 
 /// `GivenRay` of `kernels/trace/given.wgsl`.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]

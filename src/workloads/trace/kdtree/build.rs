@@ -1,4 +1,4 @@
-//! kd-tree builder: top down, greedy SAH on boxes; binned above, exact below.
+//! kd-tree builder: top down, greedy SAH on boxes; binned above, exact below, or exact at all sizes ([`super::sort`]).
 //!
 //! A triangle goes to every side that its box reaches into. A box that merely touches the plane stays on its own side,
 //! and one that lies in the plane goes to the cheaper side. No plane ever lies on the border of the cell that it
@@ -10,9 +10,11 @@ use crate::scene::Scene;
 use crate::workloads::trace::TriangleRef;
 use crate::workloads::trace::common::prims::triangle_ref;
 use crate::workloads::trace::common::prims::{self, Prim};
-use crate::workloads::trace::common::sah::{CostModel, half_area};
+use crate::workloads::trace::common::sah::{CostModel, half_area, unit};
 use crate::workloads::trace::kdtree::bins;
-use crate::workloads::trace::kdtree::exact;
+use crate::workloads::trace::kdtree::events::Sorted;
+use crate::workloads::trace::kdtree::exact::{self, Begin};
+use crate::workloads::trace::kdtree::sort;
 use crate::workloads::trace::kdtree::{KdNode, KdTree};
 use glam::{BVec4A, Vec4};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -29,6 +31,8 @@ const TASK: usize = 2048;
 /// What can be set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
+    /// How planes are found.
+    pub method: Method,
     /// Bins per axis in the upper levels, 2 to 64.
     pub bins: usize,
     /// What the bins are spread over.
@@ -46,6 +50,24 @@ pub struct Config {
     pub thin: f32,
 }
 
+/// How planes are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// By bins in large nodes, by the exact sweep in small ones.
+    Bins,
+    /// By the exact sweep at all sizes.
+    Sweep(Sorting),
+}
+
+/// When the events of the exact sweep are sorted. Both give the same tree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sorting {
+    /// Once, in O(N log N): a node's lists are filtered into its children's.
+    Once,
+    /// Anew in each node, in O(N log^2 N).
+    EveryNode,
+}
+
 /// What the bins of a node are spread over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spread {
@@ -59,6 +81,7 @@ impl Default for Config {
     /// What explains the published trees best.
     fn default() -> Self {
         Config {
+            method: Method::Bins,
             bins: 32,
             spread: Spread::Content,
             exact_below: 129,
@@ -127,7 +150,13 @@ impl Builder {
         let count = own.len();
         if count < self.config.exact_below {
             let prims: Vec<Prim> = own.iter().map(|&i| prims[i as usize]).collect();
-            return Part::Subtree(exact::build(self, &prims, cell, depth));
+            let events = [0, 1, 2].map(|axis| {
+                let mut sorted = Sorted::default();
+                sorted.fill((0..).zip(&prims), axis, &cell);
+                sorted
+            });
+            let begin = Begin { prims: &prims, events: Some(events), cell, depth, unit: unit(&cell) };
+            return Part::Subtree(exact::build(self, begin));
         }
         let split = if self.must_stop(count, depth) || self.over_budget() {
             None
@@ -144,8 +173,7 @@ impl Builder {
         let (left_cell, right_cell) = halves(&cell, split.axis, split.plane);
         let a = || self.grow(prims, left, left_cell, depth + 1);
         let b = || self.grow(prims, right, right_cell, depth + 1);
-        let parts = if split.left + split.right > TASK { rayon::join(a, b) } else { (a(), b()) };
-        Part::Inner(split.axis, split.plane, Box::new(parts))
+        Part::Inner(split.axis, split.plane, Box::new(both(split.left + split.right > TASK, a, b)))
     }
 
     /// What a node's bins are spread over.
@@ -194,6 +222,15 @@ fn partition(prims: &[Prim], own: &[u32], split: &Split) -> (Side, Side) {
     (Side { own: left, content: of_left }, Side { own: right, content: of_right })
 }
 
+/// Does two things, at the same time if they are large.
+pub(crate) fn both<A: Send, B: Send>(
+    large: bool,
+    a: impl FnOnce() -> A + Send,
+    b: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    if large { rayon::join(a, b) } else { (a(), b()) }
+}
+
 /// The cells on both sides of a plane.
 pub(crate) fn halves(cell: &Aabb, axis: usize, plane: f32) -> (Aabb, Aabb) {
     let (mut left, mut right) = (*cell, *cell);
@@ -213,13 +250,14 @@ pub(crate) struct Subtree {
 }
 
 impl Subtree {
-    fn leaf(prims: &[Prim], own: &[u32]) -> Subtree {
+    pub fn leaf(prims: &[Prim], own: &[u32]) -> Subtree {
         let triangles: Vec<u32> = own.iter().map(|&i| prims[i as usize].triangle()).collect();
         Subtree { nodes: vec![KdNode::leaf(0, triangles.len() as u32)], triangles, depth: 0 }
     }
 }
 
-enum Part {
+/// A part of a tree that is not put together yet.
+pub(crate) enum Part {
     Subtree(Subtree),
     Inner(usize, f32, Box<(Part, Part)>),
 }
@@ -319,8 +357,13 @@ pub fn build(scene: &Scene, config: &Config) -> Result<KdBuilt> {
         charged: AtomicUsize::new(0),
     };
     let part = loop {
-        let all = Side { own: (0..prims.len() as u32).collect(), content: bounds };
-        let part = builder.grow(&prims, all, bounds, 0);
+        let part = match config.method {
+            Method::Sweep(sorting) => sort::grow(&builder, &prims, sorting, bounds),
+            Method::Bins => {
+                let all = Side { own: (0..prims.len() as u32).collect(), content: bounds };
+                builder.grow(&prims, all, bounds, 0)
+            }
+        };
         if !builder.over_budget() {
             break part;
         }

@@ -2,32 +2,38 @@
 //!
 //! I. Wald and V. Havran: On building fast kd-trees for Ray Tracing, and on doing that in O(N log N), 2006. Without
 //! clipping ("perfect splits") no plane is ever new, so events are sorted once, where a subtree begins, and filtered
-//! into the children, which keeps their order.
+//! into the children, which keeps their order. Sorting them anew in each node, which takes O(N log^2 N), gives the same
+//! tree.
 
 use crate::math::Aabb;
 use crate::workloads::trace::common::prims::Prim;
-use crate::workloads::trace::common::sah::unit;
 use crate::workloads::trace::kdtree::KdNode;
-use crate::workloads::trace::kdtree::bins::Areas;
 use crate::workloads::trace::kdtree::build::{Builder, Subtree, halves};
-use crate::workloads::trace::kdtree::events::{
-    END, Event, PLANAR, SPARE, START, begun, coordinate, event, kind, local, ordered, restored, starts, sweep,
-    sweep_with_planar,
-};
+use crate::workloads::trace::kdtree::cut::{Cut, LEFT, List, RIGHT, find};
+use crate::workloads::trace::kdtree::events::{Event, SPARE, Sorted, local};
 
-/// Sides that a triangle goes to, as bits.
-const LEFT: u8 = 1;
-const RIGHT: u8 = 2;
+/// What there is of a subtree.
+pub(crate) struct Begin<'a> {
+    /// Its triangles.
+    pub prims: &'a [Prim],
+    /// By axis, their events, each triangle known by its number in `prims`; `None`: they are sorted anew in each node.
+    pub events: Option<[Sorted; 3]>,
+    pub cell: Aabb,
+    pub depth: u32,
+    /// About 1 over the extent of the cell, or of a larger one.
+    pub unit: f32,
+}
 
 /// Builds the subtree of a cell.
-pub(crate) fn build(builder: &Builder, prims: &[Prim], cell: Aabb, depth: u32) -> Subtree {
+pub(crate) fn build(builder: &Builder, begin: Begin) -> Subtree {
+    let Begin { prims, events, cell, depth, unit } = begin;
     let mut sweep = Sweep {
         builder,
         prims,
         locals: (0..prims.len() as u32).collect(),
-        events: Default::default(),
-        any_planar: [false; 3],
-        unit: 1.0,
+        every_node: events.is_none(),
+        events: events.unwrap_or_default(),
+        unit,
         over_budget: builder.over_budget(),
         side: vec![LEFT | RIGHT; prims.len()],
         out: Subtree::default(),
@@ -35,13 +41,9 @@ pub(crate) fn build(builder: &Builder, prims: &[Prim], cell: Aabb, depth: u32) -
     let locals = Span::new(0, prims.len());
     let mut root = Node { cell, depth, locals, events: [locals; 3], top: [locals.to; 4] };
     for axis in 0..3 {
-        let mut events = sweep.first_events(axis, &cell);
-        root.events[axis] = Span::new(0, events.len());
+        root.events[axis] = Span::new(0, sweep.events[axis].own);
         root.top[axis] = root.events[axis].to;
-        events.resize(events.len() + SPARE, 0);
-        sweep.events[axis] = events;
     }
-    sweep.unit = unit(&cell);
     sweep.out.depth = sweep.grow(&root);
     builder.charge(sweep.size());
     sweep.out
@@ -84,71 +86,36 @@ struct Node {
 /// Triangles' numbers are in `top[LOCALS]`.
 const LOCALS: usize = 3;
 
-/// A plane that pays.
-struct Cut {
-    axis: usize,
-    plane: f32,
-    /// Side of the triangles that lie in the plane.
-    planar_left: bool,
-    /// The events of the axis that lie in the plane.
-    here: Span,
-}
-
 struct Sweep<'a> {
     builder: &'a Builder,
     prims: &'a [Prim],
     /// Lists of triangles (numbers in `prims`, ascending), used like a stack: children's lists lie above their
     /// parent's.
     locals: Vec<u32>,
-    /// Lists of events, likewise.
-    events: [Vec<Event>; 3],
-    /// About 1 over the extent of the subtree's cell.
+    /// Lists of events, likewise; where they are sorted in each node, those of the present one.
+    events: [Sorted; 3],
+    every_node: bool,
+    /// About 1 over the extent of a cell around the subtree's.
     unit: f32,
     /// The tree has become too large.
     over_budget: bool,
-    /// Axes with triangles that lie in a plane.
-    any_planar: [bool; 3],
     /// Where a triangle goes while its node is being split; to both sides at all other times.
     side: Vec<u8>,
     out: Subtree,
 }
 
 impl Sweep<'_> {
-    /// The events of all triangles on an axis, in order.
-    ///
-    /// Those on or outside the cell's border are never candidates, and the counts know them without: a triangle that
-    /// does not begin inside has begun before, one that does not end inside never ends.
-    fn first_events(&mut self, axis: usize, cell: &Aabb) -> Vec<Event> {
-        let mut events = Vec::with_capacity(2 * self.prims.len() + SPARE);
-        for (local, prim) in self.prims.iter().enumerate() {
-            let (min, max, local) = (prim.min[axis], prim.max[axis], local as u32);
-            if min == max {
-                events.push(ordered(event(min, PLANAR, local)));
-                self.any_planar[axis] = true;
-                continue;
-            }
-            if min > cell.min[axis] {
-                events.push(ordered(event(min, START, local)));
-            }
-            if max < cell.max[axis] {
-                events.push(ordered(event(max, END, local)));
-            }
-        }
-        events.sort_unstable();
-        events.iter_mut().for_each(|e| *e = restored(*e));
-        events
-    }
-
     /// Builds the subtree of a node; returns its depth.
     fn grow(&mut self, node: &Node) -> u32 {
         let stop = self.over_budget || self.builder.must_stop(node.locals.len(), node.depth);
-        let Some(cut) = (if stop { None } else { self.find(node) }) else {
-            self.leaf(node);
+        let mut node = *node;
+        let Some(cut) = (if stop { None } else { self.find(&mut node) }) else {
+            self.leaf(&node);
             return 0;
         };
         let index = self.out.nodes.len();
         self.out.nodes.push(KdNode::leaf(0, 0));
-        let [left, right] = self.partition(node, &cut);
+        let [left, right] = self.partition(&node, &cut);
         let left_depth = self.grow(&left);
         let right_index = self.out.nodes.len() as u32;
         let right_depth = self.grow(&right);
@@ -168,52 +135,41 @@ impl Sweep<'_> {
         self.out.triangles.extend(locals.iter().map(|&l| self.prims[l as usize].triangle()));
     }
 
-    /// Sweeps all three axes for the cheapest plane; `None` if it does not pay.
-    fn find(&self, node: &Node) -> Option<Cut> {
-        let count = node.locals.len();
-        let (mut cheapest, mut axis, mut planar_left) = (u64::MAX, 0, true);
-        let (areas, area) = Areas::new(&node.cell, self.unit, self.builder.thin)?;
-        for (a, areas) in areas.iter().enumerate() {
-            let events = node.events[a].of(&self.events[a]);
-            let planar = self.any_planar[a] && events.iter().any(|&e| kind(e) == PLANAR);
-            let (mut found, mut left) = (u64::MAX, true);
-            if !planar {
-                found = sweep(&self.events[a][node.events[a].from as usize..], events.len(), areas, count);
-            }
-            // Seldom is the cheapest plane one that would cut off too thin a slice: then again, without such.
-            if planar || (found != u64::MAX && !areas.allows(coordinate(events[found as u32 as usize]))) {
-                (found, left) = sweep_with_planar(events, areas, count);
-            }
-            if found < cheapest {
-                (cheapest, axis, planar_left) = (found, a, left);
-            }
+    /// The cheapest plane; `None` if it does not pay.
+    #[inline(always)]
+    fn find(&mut self, node: &mut Node) -> Option<Cut> {
+        if self.every_node {
+            self.sort(node);
         }
-        let cost = f32::from_bits((cheapest >> 32) as u32);
-        if cheapest == u64::MAX || !self.builder.pays(count, f64::from(cost), f64::from(area)) {
-            return None;
+        let lists = [0, 1, 2].map(|axis| list(&self.events, node, axis));
+        find(self.builder, &node.cell, self.unit, node.locals.len(), &lists)
+    }
+
+    /// Sorts the events of a node, in the place of those of its parent.
+    fn sort(&mut self, node: &mut Node) {
+        let locals = node.locals.of(&self.locals);
+        for axis in 0..3 {
+            let own = locals.iter().map(|&local| (local, &self.prims[local as usize]));
+            self.events[axis].fill(own, axis, &node.cell);
+            node.events[axis] = Span::new(0, self.events[axis].own);
         }
-        let events = node.events[axis].of(&self.events[axis]);
-        let at = cheapest as u32 as usize;
-        let plane = coordinate(events[at]);
-        let before = events[..at].iter().rev().take_while(|&&e| coordinate(e) == plane).count();
-        let after = events[at..].iter().take_while(|&&e| coordinate(e) == plane).count();
-        let first = node.events[axis].from as usize + at;
-        Some(Cut { axis, plane, planar_left, here: Span::new(first - before, first + after) })
     }
 
     /// Makes the children's lists; returns the left and the right child.
     fn partition(&mut self, node: &Node, cut: &Cut) -> [Node; 2] {
-        self.classify(node, cut);
+        cut.classify(&list(&self.events, node, cut.axis), &mut self.side);
         let (left_cell, right_cell) = halves(&node.cell, cut.axis, cut.plane);
         let child = |cell| Node { cell, depth: node.depth + 1, ..*node };
         let (mut left, mut right) = (child(left_cell), child(right_cell));
-        for axis in 0..3 {
+        let passed_on = if self.every_node { 0..0 } else { 0..3 };
+        for axis in passed_on {
             if axis == cut.axis {
                 self.part(cut, node, &mut left, &mut right);
                 continue;
             }
             let side = self.side.as_slice();
-            let [a, b] = fork(&mut self.events[axis], node.events[axis], node.top[axis], |e| side[local(e)]);
+            let list = &mut self.events[axis].events;
+            let [a, b] = fork(list, node.events[axis], node.top[axis], |e| side[local(e)]);
             (left.events[axis], right.events[axis]) = (a, b);
             (left.top[axis], right.top[axis]) = (a.to, b.to);
         }
@@ -224,33 +180,18 @@ impl Sweep<'_> {
         [left, right]
     }
 
-    /// Decides where every triangle of the node goes: to both sides unless an event says otherwise.
-    fn classify(&mut self, node: &Node, cut: &Cut) {
-        let (events, side) = (self.events[cut.axis].as_slice(), self.side.as_mut_slice());
-        // What ends here or below does not reach the right; what begins here or above does not reach the left.
-        for &e in (Span { to: cut.here.to, ..node.events[cut.axis] }).of(events) {
-            side[local(e)] &= LEFT | (starts(e) << 1) as u8;
-        }
-        for &e in (Span { from: cut.here.from, ..node.events[cut.axis] }).of(events) {
-            side[local(e)] &= RIGHT | (1 - begun(e)) as u8;
-        }
-        if self.any_planar[cut.axis] {
-            let own = if cut.planar_left { LEFT } else { RIGHT };
-            cut.here.of(events).iter().filter(|&&e| kind(e) == PLANAR).for_each(|&e| side[local(e)] = own);
-        }
-    }
-
     /// The children's events on the split axis are parts of their parent's list: those below and those above the plane.
     /// What lies in the plane is on the border now, where only planar triangles are remembered.
     fn part(&mut self, cut: &Cut, node: &Node, left: &mut Node, right: &mut Node) {
         let axis = cut.axis;
-        left.events[axis].to = cut.here.from;
-        right.events[axis].from = cut.here.to;
-        if !self.any_planar[axis] {
+        let from = node.events[axis].from;
+        left.events[axis].to = from + cut.here.start as u32;
+        right.events[axis].from = from + cut.here.end as u32;
+        let Sorted { events, planar, .. } = &mut self.events[axis];
+        if !*planar {
             return;
         }
-        let events = &mut self.events[axis];
-        let planar: Vec<Event> = cut.here.of(events).iter().copied().filter(|&e| kind(e) == PLANAR).collect();
+        let planar: Vec<Event> = cut.planar(node.events[axis].of(events)).collect();
         if planar.is_empty() {
             return;
         }
@@ -269,6 +210,14 @@ impl Sweep<'_> {
         let free = (top + list.len()) as u32;
         (left.top[axis], right.top[axis]) = (free, free);
     }
+}
+
+/// A node's events on an axis.
+#[inline(always)]
+fn list<'a>(events: &'a [Sorted; 3], node: &Node, axis: usize) -> List<'a> {
+    let own = node.events[axis];
+    let Sorted { events, planar, .. } = &events[axis];
+    List { padded: &events[own.from as usize..], own: own.len(), planar: *planar }
 }
 
 /// Makes two lists from one, in the free space from `top` on: the left one above the right one, which is used last.

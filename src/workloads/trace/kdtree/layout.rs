@@ -1,7 +1,7 @@
 //! kd-tree.
 
 use super::{KIND, check};
-use crate::math::Aabb;
+use crate::math::{Aabb, Ray, ray_box};
 use crate::scene::Scene;
 use crate::workloads::trace::common::check::{Expected, Verdict};
 use crate::workloads::trace::common::memory::{self, rt2};
@@ -62,7 +62,17 @@ impl KdTree {
     }
 }
 
-/// `KdTree` of `kernels/trace/kdtree/search.wgsl`.
+impl KdTree {
+    /// Where a ray is inside the tree, from its start to `limit`; `None` if it is not.
+    #[inline(always)]
+    pub(crate) fn interval(&self, ray: &Ray, limit: f32) -> Option<(f32, f32)> {
+        let (near, far) = ray_box(ray, self.bounds.min.into(), self.bounds.max.into());
+        let (t_min, t_max) = (near.max(0.0), far.min(limit));
+        (near <= far && t_min <= t_max).then_some((t_min, t_max))
+    }
+}
+
+/// `KdTree` of `kernels/trace/kdtree/node.wgsl`.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 #[allow(missing_docs)]
@@ -101,6 +111,10 @@ impl Structure for KdTree {
     fn uniform(&self) -> Vec<u8> {
         let Aabb { min: bounds_min, max: bounds_max } = finite(self.bounds);
         bytemuck::bytes_of(&KdTreeUniform { bounds_min, pad0: 0, bounds_max, pad1: 0 }).to_vec()
+    }
+
+    fn stack_depth(&self) -> u32 {
+        self.depth
     }
 
     fn properties(&self, scene: &Scene) -> Properties {
@@ -148,6 +162,15 @@ impl KdNode {
     /// Split plane of an inner node.
     pub fn split(self) -> f32 {
         f32::from_bits(self.word)
+    }
+
+    /// The distances at which a ray is in the plane of an inner node, the smallest and the greatest: different only
+    /// where the direction is zero, an interval around the ray for a plane that it lies in.
+    #[inline(always)]
+    pub fn distances(self, ray: &Ray) -> (f32, f32) {
+        let (axis, split) = (self.axis(), self.split());
+        let inv = ray.inv_direction[axis];
+        ((split - ray.origin_min[axis]) * inv, (split - ray.origin_max[axis]) * inv)
     }
 
     /// Right child of an inner node.

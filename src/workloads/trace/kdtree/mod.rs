@@ -3,19 +3,27 @@
 mod bins;
 pub mod build;
 pub(crate) mod check;
+mod cut;
 mod events;
 mod exact;
 mod layout;
+mod rope_build;
+mod rope_check;
+mod rope_layout;
+pub mod ropes;
 pub mod search;
+mod sort;
+pub mod stack;
 
 pub use layout::{KdNode, KdTree, KdTreeUniform};
+pub use rope_layout::{NO_ROPE, RopeLeaf, RopeTree};
 
 use super::algorithm::{Builder, Made};
 use super::common::estimate::{Estimate, FAR};
 use super::common::sah::CostModel;
 use super::options::{Axis, Kind, OptionInfo};
 use super::selection::Selection;
-use super::structure::StructureKind;
+use super::structure::{Structure, StructureKind};
 use crate::device::vulkan::Texel;
 use crate::error::Result;
 use crate::scene::Scene;
@@ -27,27 +35,46 @@ static BUILDER: Builder = Builder {
     name: "kdtree",
     options: OPTIONS,
     parallel: true,
-    purpose: |_| "",
+    purpose: |s| if has_ropes(s) { "ropes" } else { "" },
     build: build_selected,
     estimate: Some(estimate),
 };
 
 const OPTIONS: &[OptionInfo] = &[
-    OptionInfo::new(Axis::Build, "bins", "32", "bins per axis in the upper levels", Kind::Count(2, 64)),
+    OptionInfo::new(
+        Axis::Build,
+        "build",
+        "hybrid",
+        "how planes are found: by bins above and the exact sweep below (hybrid), by the exact sweep of sorted boxes \
+         (sort), or by bins as long as a node has more triangles than bins (min-max); the last two know no small leaves \
+         and no depth",
+        Kind::Word(&["hybrid", "sort", "min-max"]),
+    ),
+    OptionInfo::new(
+        Axis::Build,
+        "sorting",
+        "once",
+        "sort the boxes once and filter the lists into the children, or anew in every node: the same tree",
+        Kind::Word(&["once", "every-node"]),
+    )
+    .idle_if(|s| (s.value("build") != "sort").then(|| format!("build={} sorts no large nodes", s.value("build")))),
+    OptionInfo::new(Axis::Build, "bins", "32", "bins per axis in the upper levels", Kind::Count(2, 64)).idle_if(no_bins),
     OptionInfo::new(
         Axis::Build,
         "spread",
         "content",
         "what the bins divide: the node's cell, or the part of it that triangles occupy, whose borders are candidates as well",
         Kind::Word(&["content", "cell"]),
-    ),
+    )
+    .idle_if(no_bins),
     OptionInfo::new(
         Axis::Build,
         "exact_below",
         "129",
         "nodes with fewer triangles are split by the exact sweep",
         Kind::Count(0, 1 << 29),
-    ),
+    )
+    .idle_if(not_hybrid),
     OptionInfo::new(Axis::Build, "kt", "1", "cost of a traversal step", Kind::Number(0.0, 1e6)),
     OptionInfo::new(Axis::Build, "ki", "1", "cost of a triangle test", Kind::Number(1e-6, 1e6)),
     OptionInfo::new(
@@ -56,14 +83,16 @@ const OPTIONS: &[OptionInfo] = &[
         "2",
         "largest number of triangles at which a node is always a leaf",
         Kind::Count(0, 1 << 20),
-    ),
+    )
+    .idle_if(not_hybrid),
     OptionInfo::new(
         Axis::Build,
         "max_depth",
         "60",
         "greatest depth, auto is 8 + 1.3 log2(triangles); less where that would take excessive memory",
         Kind::CountOrAuto(0, build::MAX_DEPTH),
-    ),
+    )
+    .idle_if(not_hybrid),
     OptionInfo::new(
         Axis::Build,
         "thin",
@@ -71,10 +100,33 @@ const OPTIONS: &[OptionInfo] = &[
         "thinnest slice that a split may cut off, as a share of the scene's diagonal",
         Kind::Number(0.0, 1.0),
     ),
+    OptionInfo::new(
+        Axis::Build,
+        "push",
+        "on",
+        "let every rope end at the smallest node that covers its face, not at the largest that touches it",
+        Kind::Word(&["on", "off"]),
+    )
+    .idle_if(|s| (!has_ropes(s)).then(|| format!("search={} has no ropes", s.value("search")))),
 ];
 
-fn build_selected(s: &Selection, scene: &Scene) -> Result<Made> {
-    let config = build::Config {
+fn has_ropes(s: &Selection) -> bool {
+    s.value("search") == "ropes"
+}
+
+fn no_bins(s: &Selection) -> Option<String> {
+    (s.value("build") == "sort").then(|| "build=sort has no bins".to_owned())
+}
+
+fn not_hybrid(s: &Selection) -> Option<String> {
+    let build = s.value("build");
+    (build != "hybrid").then(|| format!("build={build} has a rule of its own"))
+}
+
+/// What is selected. `sort` and `min-max` stop only where no split pays.
+fn config(s: &Selection) -> build::Config {
+    let hybrid = build::Config {
+        method: build::Method::Bins,
         bins: s.size("bins"),
         spread: if s.value("spread") == "cell" { build::Spread::Cell } else { build::Spread::Content },
         exact_below: s.size("exact_below"),
@@ -83,10 +135,29 @@ fn build_selected(s: &Selection, scene: &Scene) -> Result<Made> {
         max_depth: s.count("max_depth"),
         thin: s.number("thin") as f32,
     };
-    let built = build::build(scene, &config)?;
-    let note = format!("max_depth={}: a deeper tree would take excessive memory", built.max_depth);
-    let note = if built.cut { note } else { String::new() };
-    Ok(Made { structure: Arc::new(built.tree), note })
+    let pure = build::Config { small_leaf: 0, max_depth: Some(build::MAX_DEPTH), ..hybrid };
+    let sorting = if s.value("sorting") == "once" { build::Sorting::Once } else { build::Sorting::EveryNode };
+    match s.value("build") {
+        "sort" => build::Config { method: build::Method::Sweep(sorting), ..pure },
+        "min-max" => build::Config { exact_below: hybrid.bins + 1, ..pure },
+        _ => hybrid,
+    }
+}
+
+fn build_selected(s: &Selection, scene: &Scene) -> Result<Made> {
+    let built = build::build(scene, &config(s))?;
+    let note = if built.cut {
+        format!("max_depth={}: a deeper tree would take excessive memory", built.max_depth)
+    } else if s.value("build") != "hybrid" && built.tree.depth == build::MAX_DEPTH {
+        format!("max_depth={}: no traversal follows a deeper tree", build::MAX_DEPTH)
+    } else {
+        String::new()
+    };
+    let structure: Arc<dyn Structure> = match has_ropes(s) {
+        true => Arc::new(RopeTree::new(built.tree, s.value("push") == "on")),
+        false => Arc::new(built.tree),
+    };
+    Ok(Made { structure, note })
 }
 
 /// Per triangle, over the nine scenes of the thesis (tables 5.5 and 5.6): the median of leaves and of references. The
@@ -95,8 +166,14 @@ fn build_selected(s: &Selection, scene: &Scene) -> Result<Made> {
 const LEAVES: f64 = 1.49;
 const REFERENCES: f64 = 3.45;
 
-fn estimate(_: &Selection, scene: &Scene) -> Result<Estimate> {
+fn estimate(s: &Selection, scene: &Scene) -> Result<Estimate> {
     let triangles = scene.triangles.len() as f64;
     let nodes = (2.0 * LEAVES * triangles, size_of::<KdNode>());
-    Ok(Estimate::new("kdtree", FAR, nodes, REFERENCES * triangles, scene))
+    let standard = Estimate::new("kdtree", FAR, nodes, REFERENCES * triangles, scene);
+    if !has_ropes(s) {
+        return Ok(standard);
+    }
+    let ropes = LEAVES * triangles * size_of::<RopeLeaf>() as f64;
+    // The thesis counts no ropes
+    Ok(Estimate { structure_bytes: standard.structure_bytes + ropes as u64, thesis_bytes: 0, ..standard })
 }

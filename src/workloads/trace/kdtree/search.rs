@@ -1,15 +1,17 @@
 //! kd-tree without a full stack: restart (Foley and Sugerman 2005), pushdown and short stack (Horn et al. 2007). Twin
-//! of `kernels/trace/kdtree/search.wgsl`.
+//! of `kernels/trace/kdtree/search.wgsl` and of `trail.wgsl`, which it includes.
 //!
 //! A restart resumes by the path taken, not by the distance reached: from afar, many cells have ends that round to the
 //! same distance, and none of them may be skipped or visited endlessly.
 
 use crate::error::Result;
-use crate::math::{MISS, Ray, ray_box};
+use crate::math::Ray;
 use crate::workloads::trace::algorithm::{Algorithm, Parameter, Parameters, Traversal};
 use crate::workloads::trace::backend::Prepared;
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::cpu::TwinInput;
+use crate::workloads::trace::kdtree::ropes::ROPES;
+use crate::workloads::trace::kdtree::stack::STACK;
 use crate::workloads::trace::kdtree::{BUILDER, KIND, KdNode, KdTree as Tree};
 use crate::workloads::trace::options::{Axis, GROUP, Kind, OptionInfo};
 use crate::workloads::trace::selection::Selection;
@@ -19,10 +21,14 @@ use crate::workloads::trace::traverse::{Best, TraverseIndependent, Triangles};
 pub static KDTREE: Algorithm = Algorithm {
     name: "kdtree",
     alias: "",
-    summary: "SAH kd-tree, short stack of four with pushdown and restart",
-    paper: "Shevtsov et al. 2007; Wald and Havran 2006; Horn et al. 2007",
+    summary: "SAH kd-tree; a short stack of four with pushdown and restart, a full stack, or ropes",
+    paper: "Shevtsov et al. 2007; Wald and Havran 2006; Horn et al. 2007; Popov et al. 2007",
     builder: &BUILDER,
-    traversal: |_| &SEARCH,
+    traversal: |selection| match selection.value("search") {
+        "stack" => &STACK,
+        "ropes" => &ROPES,
+        _ => &SEARCH,
+    },
     options: OPTIONS,
 };
 
@@ -32,8 +38,8 @@ pub static SEARCH: Traversal = Traversal {
     structure: &KIND,
     parameters,
     slots: |parameters| match parameters.flag("PRIVATE_STACK") {
-        true => &[("short_stack", "trace/kdtree/short_stack_private.wgsl")],
-        false => &[("short_stack", "trace/kdtree/short_stack_workgroup.wgsl")],
+        true => &[("nodes", "trace/kdtree/nodes.wgsl"), ("short_stack", "trace/kdtree/short_stack_private.wgsl")],
+        false => &[("nodes", "trace/kdtree/nodes.wgsl"), ("short_stack", "trace/kdtree/short_stack_workgroup.wgsl")],
     },
     twin: Some(twin),
     ..Traversal::INDEPENDENT
@@ -47,9 +53,9 @@ const OPTIONS: &[OptionInfo] = &[
         Axis::Traversal,
         "search",
         "short-stack",
-        "after a leaf: restart at the root, at the deepest node without a branch above (pushdown), or pop from a \
-                  short stack and push down",
-        Kind::Word(&["restart", "pushdown", "short-stack"]),
+        "after a leaf: restart at the root, at the deepest node without a branch above (pushdown), pop from a short \
+         stack and push down, pop from a stack of all far children, or follow the leaf's rope to its neighbour",
+        Kind::Word(&["restart", "pushdown", "short-stack", "stack", "ropes"]),
     ),
     OptionInfo::new(Axis::Traversal, "stack", "4", "entries of the short stack", Kind::Count(1, MAX_SHORT_STACK))
         .idle_if(has_no_stack),
@@ -141,11 +147,8 @@ impl<const MOST: usize> Descent<MOST> {
     /// Goes one inner node down.
     #[inline]
     fn descend(&mut self, ray: &Ray, node: KdNode) {
-        let axis = node.axis();
-        let inv = ray.inv_direction[axis];
-        // Different only where the direction is zero: an interval around the ray for a plane that it lies in
-        let t_from = (node.split() - ray.origin_min[axis]) * inv;
-        let t_to = (node.split() - ray.origin_max[axis]) * inv;
+        let inv = ray.inv_direction[node.axis()];
+        let (t_from, t_to) = node.distances(ray);
         // Ordered along the ray. A plane behind the origin has t_to < 0 <= t_min: only the far side is left, which is
         // the side of the origin, as in the thesis. A cell whose two ends round to one distance is still visited,
         // as a triangle may lie in it alone.
@@ -228,12 +231,15 @@ impl<'a, const MOST: usize> KdTree<'a, MOST> {
         Ok(KdTree { triangles: input.triangles(), tree: input.structure()?, short_stack, pushdown })
     }
 
+    /// A search that restarts after every leaf, at the deepest node above which it never had to branch.
+    pub(crate) fn without_stack(triangles: Triangles<'a>, tree: &'a Tree) -> Self {
+        KdTree { triangles, tree, short_stack: 0, pushdown: true }
+    }
+
     #[inline]
     fn start_descent(&self, ray: &Ray, limit: f32) -> Option<Descent<MOST>> {
-        let (near, far) = ray_box(ray, self.tree.bounds.min.into(), self.tree.bounds.max.into());
-        let t_min = near.max(0.0);
-        let t_end = far.min(limit);
-        (near <= far && t_min <= t_end).then_some(Descent {
+        let (t_min, t_end) = self.tree.interval(ray, limit)?;
+        Some(Descent {
             node: 0,
             t_min,
             t_max: t_end,
@@ -253,12 +259,20 @@ impl<'a, const MOST: usize> KdTree<'a, MOST> {
     }
 }
 
-impl<const MOST: usize> TraverseIndependent for KdTree<'_, MOST> {
-    fn traverse<const ANY: bool, C: Count>(&self, ray: &Ray, limit: f32, count: &mut C) -> u32 {
+impl<const MOST: usize> KdTree<'_, MOST> {
+    /// The triangle reference of the nearest hit before `limit`, with `ANY` of some hit there, or
+    /// [`crate::math::MISS`]. `best` is what another search of the same ray has found already.
+    #[inline]
+    pub(crate) fn search<const ANY: bool, C: Count>(
+        &self,
+        ray: &Ray,
+        limit: f32,
+        mut best: Best,
+        count: &mut C,
+    ) -> u32 {
         let Some(mut d) = self.start_descent(ray, limit) else {
-            return MISS;
+            return best.triangle_ref;
         };
-        let mut best = Best::before(limit);
         loop {
             let node = self.tree.nodes[d.node as usize];
             if node.is_leaf() {
@@ -274,5 +288,11 @@ impl<const MOST: usize> TraverseIndependent for KdTree<'_, MOST> {
                 d.descend(ray, node);
             }
         }
+    }
+}
+
+impl<const MOST: usize> TraverseIndependent for KdTree<'_, MOST> {
+    fn traverse<const ANY: bool, C: Count>(&self, ray: &Ray, limit: f32, count: &mut C) -> u32 {
+        self.search::<ANY, C>(ray, limit, Best::before(limit), count)
     }
 }

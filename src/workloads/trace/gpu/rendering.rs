@@ -1,0 +1,222 @@
+//! Frames of a ray configuration on a device: the kernels of their passes, the uniforms, and the lists between passes.
+
+use super::kernels::{Entry, StagedPass};
+use super::prepared::GpuPrepared;
+use super::shared::{FrameUniform, LENGTH, WaitingPath};
+use crate::camera::View;
+use crate::device::vulkan::{Bindings, Buffer, Dispatch, Groups, Pipeline, Resource};
+use crate::device::{Frame, Pass, Stage, Submissions};
+use crate::error::{Error, Result};
+use crate::scene::Light;
+use crate::workloads::trace::Method;
+use crate::workloads::trace::backend::*;
+use crate::workloads::trace::method::Reflections;
+use std::sync::Arc;
+
+/// The one stage of a fused frame: rays are generated, traced and shaded by one kernel.
+const RENDER: [Stage; 1] = [Stage("render")];
+
+/// The stages of a staged frame: a pass for the primary rays, and one for each reflection.
+const STAGED: [Stage; 1 + MAX_BOUNCES as usize] = [Stage("primary"), Stage("reflection-1"), Stage("reflection-2")];
+
+/// A part of an image, and the index of the output pixel where it would begin if it had all columns.
+pub(super) type Part = (Tile, u32);
+
+/// Uniforms and lights of many frames, uploaded before any of them runs.
+struct FrameInputs {
+    uniforms: Buffer,
+    lights: Buffer,
+    /// Bytes between the uniforms of two parts.
+    stride: u32,
+    /// Work-groups of each part, columns and rows.
+    groups: Vec<(u32, u32)>,
+    parts_per_frame: usize,
+}
+
+/// The list that a pass of a staged frame makes for the next one.
+struct List {
+    /// For each part the work-groups of an indirect dispatch, and the number of paths.
+    lengths: Buffer,
+    /// Of the part that is worked on.
+    paths: Buffer,
+}
+
+/// Frames that are ready to run.
+pub(super) struct Rendering<'p> {
+    pipelines: &'p [Arc<Pipeline>],
+    bindings: Vec<Bindings>,
+    lists: Vec<List>,
+    inputs: FrameInputs,
+}
+
+/// The stages of a frame.
+pub(super) fn stages(method: Method, config: Config) -> &'static [Stage] {
+    if method.is_staged(config.bounces()) { &STAGED[..=config.bounces() as usize] } else { &RENDER }
+}
+
+/// The kernels of a frame's passes, in their order.
+pub(super) fn entries_of(method: Method, config: Config, counting: bool) -> Vec<Entry> {
+    if method.is_staged(config.bounces()) {
+        StagedPass::all(config).into_iter().map(|pass| Entry::Staged { config, counting, pass }).collect()
+    } else {
+        vec![Entry::Render { config, counting }]
+    }
+}
+
+impl GpuPrepared<'_> {
+    /// The compiled kernels of a frame's passes.
+    pub(super) fn pipelines(&self, config: Config, counting: bool) -> Result<Vec<Arc<Pipeline>>> {
+        entries_of(self.method, config, counting).into_iter().map(|entry| self.compiled(entry)).collect()
+    }
+
+    /// Uploads what frames of these views need, each in these parts.
+    pub(super) fn rendering<'p>(
+        &self,
+        pipelines: &'p [Arc<Pipeline>],
+        (views, size): (&[View], Size),
+        parts: &[Part],
+        output: &Buffer,
+    ) -> Result<Rendering<'p>> {
+        let inputs = self.frame_inputs(views, size, parts)?;
+        let lists = (1..pipelines.len()).map(|_| self.list(inputs.groups.len(), parts)).collect::<Result<Vec<_>>>()?;
+        let bindings = pipelines.iter().enumerate().map(|(pass, pipeline)| {
+            let mut others = vec![(5, &inputs.lights), (8, output)];
+            if let Some(List { lengths, paths }) = lists.get(pass) {
+                others.extend([(9, lengths), (10, paths)]);
+            }
+            if let Some(List { lengths, paths }) = pass.checked_sub(1).map(|before| &lists[before]) {
+                others.extend([(11, lengths), (12, paths)]);
+            }
+            self.render_bindings(pipeline, &inputs.uniforms, &others)
+        });
+        Ok(Rendering { pipelines, bindings: bindings.collect(), lists, inputs })
+    }
+
+    /// A list for parts of an image, of which `uploaded` are uploaded for all views.
+    fn list(&self, uploaded: usize, parts: &[Part]) -> Result<List> {
+        let pixels = |tile: &Tile| u64::from(tile.columns) * u64::from(tile.rows);
+        let largest = parts.iter().map(|(tile, _)| pixels(tile)).max().unwrap_or(0);
+        Ok(List {
+            lengths: self.device.indirect("the lengths of lists", &vec![LENGTH; uploaded])?,
+            paths: self.device.zeroed("the list of reflecting pixels", largest * size_of::<WaitingPath>() as u64)?,
+        })
+    }
+
+    /// Uploads the uniforms of all parts of all views.
+    fn frame_inputs(&self, views: &[View], size: Size, parts: &[Part]) -> Result<FrameInputs> {
+        let stride = self.device.uniform_stride(size_of::<FrameUniform>());
+        let mut uniforms = Vec::with_capacity(views.len() * parts.len() * stride as usize);
+        let mut lights: Vec<Light> = Vec::new();
+        let mut groups = Vec::with_capacity(views.len() * parts.len());
+        for view in views {
+            let grid = view.camera.pixel_grid(size.width, size.height);
+            for &(tile, first_pixel) in parts {
+                let uniform = FrameUniform {
+                    origin: grid.origin,
+                    width: size.width,
+                    corner: grid.corner,
+                    first_row: tile.row,
+                    right: grid.right,
+                    rows: tile.rows,
+                    down: grid.down,
+                    epsilon: self.lengths.epsilon,
+                    background: self.scene.background,
+                    light_count: view.lights.len() as u32,
+                    first_light: lights.len() as u32,
+                    first_pixel,
+                    first_column: tile.column,
+                    columns: tile.columns,
+                    height: size.height,
+                    shadow_reach: self.lengths.reach,
+                    part: groups.len() as u32,
+                    pad: 0,
+                };
+                uniforms.extend_from_slice(bytemuck::bytes_of(&uniform));
+                uniforms.resize(uniforms.len().next_multiple_of(stride as usize), 0);
+                groups.push((
+                    tile.columns.div_ceil(self.method.group.width),
+                    tile.rows.div_ceil(self.method.group.height),
+                ));
+            }
+            lights.extend_from_slice(&view.lights);
+        }
+        let most = self.device.max_groups();
+        if let Some((x, y)) = groups.iter().find(|(x, y)| *x.max(y) > most) {
+            let problem = format!("{x} x {y} work-groups are more than this device's {most} per dimension");
+            return Err(Error::too_large("the image", problem, "use a smaller one"));
+        }
+        Ok(FrameInputs {
+            uniforms: self.device.uniform("the frames", &uniforms)?,
+            lights: self.device.storage("the lights", &lights)?,
+            stride,
+            groups,
+            parts_per_frame: parts.len(),
+        })
+    }
+
+    fn render_bindings(&self, pipeline: &Pipeline, uniforms: &Buffer, others: &[(u32, &Buffer)]) -> Bindings {
+        let uniform = Resource::Window(uniforms, size_of::<FrameUniform>() as u64);
+        let of_scene = [(3, &self.uploaded.materials), (4, &self.uploaded.triangle_materials)];
+        self.bind(pipeline, uniform, &[&of_scene, others].concat())
+    }
+
+    /// Splits an image into about `across` x `down` parts of whole work-groups, each with its own place in the output;
+    /// into more where the list of a staged frame would not fit.
+    pub(super) fn parts(&self, size: Size, across: u32, down: u32) -> Vec<Part> {
+        let down = down.max(size.height.div_ceil(self.rows_of_a_list(size)));
+        tiles(size, across, down, self.method.group).into_iter().map(|tile| (tile, tile.row * size.width)).collect()
+    }
+
+    /// The rows of a part whose list can be bound as one buffer and dispatched in one dimension.
+    fn rows_of_a_list(&self, size: Size) -> u32 {
+        if self.method.reflections == Reflections::Fused {
+            return size.height;
+        }
+        let group = self.method.group;
+        let bound = self.device.max_binding() / size_of::<WaitingPath>() as u64;
+        let paths = bound.min(u64::from(self.device.max_groups()) * u64::from(group.size()));
+        let rows = u32::try_from(paths / u64::from(size.width)).unwrap_or(u32::MAX);
+        if rows >= size.height {
+            return size.height;
+        }
+        // A part has whole work-groups
+        (rows / group.height * group.height).max(group.height)
+    }
+}
+
+impl Rendering<'_> {
+    /// The frames that were uploaded, each with the passes of all its parts.
+    pub fn frames(&self) -> Vec<Frame<Dispatch<'_>>> {
+        let parts: Vec<Frame<Dispatch>> = self.parts().collect();
+        let frames = parts.chunks(self.inputs.parts_per_frame).map(|parts| Frame {
+            passes: parts.iter().flat_map(|part| part.passes.clone()).collect(),
+            submissions: parts[0].submissions,
+        });
+        frames.collect()
+    }
+
+    /// The parts of all frames, each as a frame.
+    pub fn parts(&self) -> impl Iterator<Item = Frame<Dispatch<'_>>> {
+        let stages = if self.pipelines.len() > 1 { &STAGED[..] } else { &RENDER[..] };
+        // A watchdog asks for parts, which it is to see alone; without parts the host is not to be seen between passes
+        let is_whole = self.inputs.parts_per_frame == 1 && self.pipelines.len() > 1;
+        let submissions = if is_whole { Submissions::PerFrame } else { Submissions::PerPass };
+        (0u32..).zip(&self.inputs.groups).map(move |(part, &(x, y))| {
+            let passes = self.pipelines.iter().enumerate().map(|(pass, pipeline)| {
+                let groups = match pass.checked_sub(1) {
+                    None => Groups::Fixed(x, y, 1),
+                    Some(before) => Groups::Indirect {
+                        buffer: &self.lists[before].lengths,
+                        offset: u64::from(part) * size_of_val(&LENGTH) as u64,
+                    },
+                };
+                let offset = Some(part * self.inputs.stride);
+                Pass {
+                    stage: stages[pass],
+                    work: Dispatch { pipeline, bindings: &self.bindings[pass], offset, groups },
+                }
+            });
+            Frame { passes: passes.collect(), submissions }
+        })
+    }
+}
