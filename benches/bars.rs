@@ -1,4 +1,5 @@
-//! The bars of the builders, as ratios of interleaved rounds in one run: `cargo bench --bench bars`.
+//! The bars of the builders, as ratios of interleaved rounds in one run: `cargo bench --bench bars`. Those of two
+//! threads mean something only on a machine on which two builds at once take no longer than one.
 //!
 //! Every round builds each contestant once, in alternating order; a ratio is the median of the rounds' ratios, with the
 //! interval that an exact sign test gives at about 95 %.
@@ -85,6 +86,13 @@ fn bars(name: &str, scene: &Scene, rounds: usize) {
     let mut contestants: Vec<Contestant> = vec![
         own("bvh, 1 thread", "bvh", 1, scene),
         own("bvh, 2 threads", "bvh", 2, scene),
+        own("bvh leaves of 3, 1 thread", "bvh:max_leaf=3", 1, scene),
+        own("sweep, 1 thread", "bvh:build=sweep,max_leaf=3", 1, scene),
+        own("sweep, 2 threads", "bvh:build=sweep,max_leaf=3", 2, scene),
+        own("spatial, 1 thread", "bvh:build=spatial,max_leaf=3", 1, scene),
+        own("spatial, 2 threads", "bvh:build=spatial,max_leaf=3", 2, scene),
+        own("bih, 1 thread", "bih", 1, scene),
+        own("bih, 2 threads", "bih", 2, scene),
         own("kdtree, 1 thread", "kdtree", 1, scene),
         own("kdtree, 2 threads", "kdtree", 2, scene),
         own("grid, 1 thread", "grid", 1, scene),
@@ -104,6 +112,11 @@ fn bars(name: &str, scene: &Scene, rounds: usize) {
     for (a, b, bar) in [
         ("bvh, 1 thread", "parry3d binned, 1 thread", "at most 1"),
         ("bvh, 1 thread", "bvh, 2 threads", "at least 1.6"),
+        ("sweep, 1 thread", "bvh leaves of 3, 1 thread", "at most 4"),
+        ("sweep, 1 thread", "sweep, 2 threads", "at least 1.6"),
+        ("spatial, 1 thread", "bvh leaves of 3, 1 thread", "at most 10"),
+        ("spatial, 1 thread", "spatial, 2 threads", "at least 1.6"),
+        ("bih, 1 thread", "bih, 2 threads", "at least 1.6"),
         ("kdtree, 1 thread", "bvh, 1 thread", "at most 5"),
         ("kdtree, 2 threads", "bvh, 2 threads", "at most 5"),
         ("grid, 1 thread", "bvh, 1 thread", "less than 1"),

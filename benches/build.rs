@@ -13,7 +13,7 @@ use rtbench::workloads::trace::Selection;
 use std::hint::black_box;
 use std::time::Duration;
 
-const STRUCTURES: [&str; 9] = [
+const STRUCTURES: [&str; 14] = [
     "grid",
     "kdtree",
     "kdtree:build=sort",
@@ -22,6 +22,11 @@ const STRUCTURES: [&str; 9] = [
     "kdtree:build=sort,search=ropes",
     "kdtree:build=sort,push=off,search=ropes",
     "bvh",
+    "bvh:max_leaf=3",
+    "bvh:build=sweep,max_leaf=3",
+    "bvh:build=sweep,max_leaf=3,sorting=every-node",
+    "bvh:build=spatial,max_leaf=3",
+    "bih",
     "ploc-stack",
 ];
 

@@ -1,9 +1,9 @@
 //! The bars of the traversals, as ratios of interleaved rounds in one run: `cargo bench --bench rays`.
 //!
 //! One frame of primary rays, 1024 squared: obvhs's own CPU traversal (medium build, precomputed triangles, hit or miss
-//! only) against `bvh-stack`, `ploc-stack` and kd-trees, which also shade and store, as CPU twins and on the best
-//! Vulkan device. Rounds alternate in order; a ratio is the median of the rounds' ratios, with the interval that an
-//! exact sign test gives at about 95 %.
+//! only) against `bvh-stack` of each builder, `bih`, `ploc-stack` and kd-trees, which also shade and store, as CPU
+//! twins and on the best Vulkan device. Rounds alternate in order; a ratio is the median of the rounds' ratios, with
+//! the interval that an exact sign test gives at about 95 %.
 
 mod common;
 
@@ -26,8 +26,12 @@ use std::time::Instant;
 /// Milliseconds of one frame.
 type Contestant<'a> = (String, Box<dyn FnMut() -> f64 + 'a>);
 
-const STRUCTURES: [&str; 5] = [
+const STRUCTURES: [&str; 9] = [
     "bvh-stack",
+    "bvh-stack:build=sweep,max_leaf=3",
+    "bvh-stack:build=sweep,max_leaf=3,cull=off",
+    "bvh-stack:build=spatial,max_leaf=3",
+    "bih",
     "ploc-stack",
     "kdtree:build=sort",
     "kdtree:build=sort,search=stack",
@@ -87,7 +91,7 @@ fn rays(name: &str, scene: &Scene, side: u32, rounds: usize) {
     println!("{name}: {} triangles, P at {side}x{side}, {rounds} interleaved rounds", scene.triangles.len());
     for ((label, _), own) in contestants.iter().zip(&times) {
         let rate = size.pixels() as f64 / median(own) * 1e-3;
-        print!("  {label:40} median {:8.2} ms, fastest {:8.2} ms, {rate:6.2} Mrays/s", median(own), sorted(own)[0]);
+        print!("  {label:50} median {:8.2} ms, fastest {:8.2} ms, {rate:6.2} Mrays/s", median(own), sorted(own)[0]);
         let ratio = ratio(&times[0], own);
         println!(", {:.3} ({:.3} to {:.3}) of obvhs's rays per second", ratio.value, ratio.low, ratio.high);
     }

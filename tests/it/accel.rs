@@ -1,12 +1,15 @@
 //! Builders: every one, with several options, over every degenerate scene, validated; validation itself; determinism;
 //! the published numbers.
 
+mod bih;
 mod broken;
 mod degenerate;
 mod kdtree_sort;
 mod registry;
 mod scenes;
 mod selections;
+mod spatial;
+mod sweep;
 mod thesis;
 
 use glam::Vec3;
@@ -17,7 +20,7 @@ use rtbench::workloads::trace::{Selection, Structure};
 use std::sync::Arc;
 
 /// Every builder, with options that lead through other code.
-pub const SELECTIONS: [&str; 30] = [
+pub const SELECTIONS: [&str; 42] = [
     "grid",
     "grid:factor=1",
     "grid:x=5",
@@ -42,11 +45,23 @@ pub const SELECTIONS: [&str; 30] = [
     "bvh:bins=32,max_leaf=15",
     "bvh:max_leaf=15,kt=1",
     "bvh:max_leaf=15,kt=0,ki=2",
+    "bvh:build=sweep,max_leaf=3",
+    "bvh:build=sweep,max_leaf=3,sorting=every-node",
+    "bvh:build=sweep,max_leaf=15,kt=1",
+    "bvh:build=sweep,max_leaf=1,axes=longest,max_depth=20",
+    "bvh:build=sweep,max_leaf=1,max_depth=440",
+    "bvh:build=spatial,max_leaf=3",
+    "bvh:build=spatial,max_leaf=1,alpha=0",
+    "bvh:build=spatial,overlap=below,alpha=0.01,spatial_bins=5",
+    "bvh:build=spatial,max_leaf=2,axes=longest,alpha=0,spatial_bins=128,spatial_depth=440",
     "ploc-stack",
     "ploc-stack:preset=fastest",
     "ploc-stack:preset=very-fast",
     "ploc-stack:preset=slow",
     "ploc-stack:preset=very-slow",
+    "bih",
+    "bih:max_leaf=1",
+    "bih:max_leaf=15",
     "brute",
 ];
 
@@ -85,9 +100,7 @@ fn every_builder_is_valid_on_ordinary_scenes() {
 
 #[test]
 fn no_bvh_is_deeper_than_the_bound() {
-    // Every next triangle is ten times farther away: greedy splits take one triangle off at a time.
-    let corners = |i: i32| Vec3::splat(10_f32.powi(i / 8) * (1.0 + 0.1 * (i % 8) as f32));
-    let far = scenes::soup("powers of ten", (-240..240).map(|i| [corners(i), corners(i), corners(i)]));
+    let far = scenes::powers_of_ten();
     let bvh: Bvh = build_as("bvh:max_leaf=1,bins=2", &far);
     assert!(bvh.depth > 20, "the scene is no challenge: depth {}", bvh.depth);
     assert!(bvh.depth <= rtbench::workloads::trace::bvh::MAX_DEPTH);

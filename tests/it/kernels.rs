@@ -6,6 +6,7 @@ use rtbench::device::Source;
 use rtbench::math::Vertex;
 use rtbench::scene::{Light, Material};
 use rtbench::workloads::trace::backend::{Config, CountedPixel, Counters, Pixel};
+use rtbench::workloads::trace::bih::{BihNode, BihUniform};
 use rtbench::workloads::trace::brute::BruteUniform;
 use rtbench::workloads::trace::gpu::kernels::{self, Entry, Kernel, StagedPass};
 use rtbench::workloads::trace::gpu::{FrameUniform, TraceRay, WaitingPath};
@@ -66,6 +67,10 @@ fn every_variant_is_valid() {
         "bvh-stack:pattern=four",
         "bvh-stack:group=64x1",
         "bvh-stack:group=16x16",
+        "bvh-stack:cull=off",
+        "bvh-stack:build=spatial",
+        "bvh-stack:build=spatial,cull=off",
+        "bvh:build=spatial",
         "bvh-stack:reflections=staged",
     ];
     for text in special {
@@ -199,10 +204,18 @@ fn struct_layouts_agree() {
     let module = &check(&assemble(&kernel)).unwrap();
     same_layout!(module, "GivenRay", TraceRay, [origin, direction]);
     same_layout!(module, "KdTree", KdTreeUniform, [bounds_min, bounds_max]);
+    same_layout!(&render("bih", false), "Bih", BihUniform, [bounds_min, bounds_max]);
     // Rows of 16 bytes, of which kernels read whole ones
     let rows =
         [offset_of!(RopeLeaf, min), offset_of!(RopeLeaf, max), offset_of!(RopeLeaf, low), offset_of!(RopeLeaf, high)];
     assert_eq!((rows, size_of::<RopeLeaf>()), ([0, 16, 32, 48], 64));
     assert_eq!([offset_of!(RopeLeaf, first), offset_of!(RopeLeaf, count)], [12, 28]);
     same_layout!(&render("brute", false), "Brute", BruteUniform, [triangle_refs]);
+}
+
+/// Kernels read two nodes of 12 bytes as three words of 8 bytes.
+#[test]
+fn nodes_of_a_bih_are_packed() {
+    assert_eq!(size_of::<BihNode>(), 12);
+    assert_eq!([offset_of!(BihNode, link), offset_of!(BihNode, words)], [0, 4]);
 }

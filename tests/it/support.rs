@@ -1,10 +1,12 @@
 //! What several modules need: small scenes, random numbers, the GPU if there is one, files of others.
 
 use glam::Vec3;
+use rtbench::camera::{Camera, View};
 use rtbench::device::VulkanDevice;
 use rtbench::device::vulkan::{Selector, VulkanOptions, adapters, choose};
 use rtbench::math::Vertex;
 use rtbench::scene::{Light, Material, Scene, Triangle};
+use rtbench::workloads::trace::backend::GivenRay;
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
@@ -56,6 +58,15 @@ pub fn soup(triangles: usize, seed: u32, flat: bool) -> Scene {
     scene.lights.push(Light::new(Vec3::new(2.0, 3.0, 1.0), Vec3::ONE));
     scene.background = Vec3::new(0.1, 0.1, 0.2);
     scene
+}
+
+/// A view whose middle looks along a ray, almost as narrow as the ray.
+pub fn view_along(ray: &GivenRay) -> View {
+    let (position, direction) = (ray.origin, ray.direction.normalize());
+    View {
+        camera: Camera { position, direction, up: direction.any_orthonormal_vector(), field_of_view: 0.01 },
+        lights: Vec::new(),
+    }
 }
 
 fn open(options: VulkanOptions) -> Option<VulkanDevice> {

@@ -81,7 +81,7 @@ fn names() -> Vec<&'static str> {
 }
 
 /// Ways to walk a structure other than each one's own.
-const OTHERS: [&str; 37] = [
+const OTHERS: [&str; 46] = [
     "kdtree:search=restart",
     "kdtree:search=pushdown",
     "kdtree:stack=1",
@@ -101,6 +101,13 @@ const OTHERS: [&str; 37] = [
     "bvh:vote=original",
     "bvh:packet=8x4",
     "bvh:packet=4x4,vote=original",
+    "bvh:build=spatial,max_leaf=2,alpha=0",
+    "bvh-stack:cull=off",
+    "bvh-stack:build=sweep,max_leaf=3",
+    "bvh-stack:build=spatial,max_leaf=3",
+    "bvh-stack:build=spatial,max_leaf=1,alpha=0,cull=off",
+    "ploc-stack:preset=slow",
+    "bih:max_leaf=1",
     "grid-coop:packet=4x4",
     "grid-packet:packet=4x4",
     "grid:group=32x1,tiles=3",
@@ -115,12 +122,14 @@ const OTHERS: [&str; 37] = [
     "kdtree:fetch=buffers",
     "bvh:fetch=buffers",
     "bvh-stack:fetch=buffers",
+    "bih:fetch=buffers",
     "kdtree:search=ropes,fetch=buffers",
     "grid:fetch=textures",
     "kdtree:fetch=textures",
     "kdtree:search=ropes,fetch=textures",
     "bvh:fetch=textures",
     "bvh-stack:fetch=textures",
+    "bih:fetch=textures",
 ];
 
 pub fn all_names() -> Vec<&'static str> {

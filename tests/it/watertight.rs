@@ -57,7 +57,10 @@ fn no_ray_is_lost_inside_a_closed_mesh() {
 #[test]
 #[ignore = "a million rays; CI traces a sample of them"]
 fn no_ray_of_a_million_is_lost_inside_a_closed_mesh() {
-    lose_nothing_inside(100_000, &["grid", "kdtree", "bvh", "bvh-stack", "ploc-stack", "grid-coop", "grid-packet"]);
+    lose_nothing_inside(
+        100_000,
+        &["grid", "kdtree", "bvh", "bvh-stack", "ploc-stack", "bih", "grid-coop", "grid-packet"],
+    );
 }
 
 /// Rays from outside at vertices and edges that face them, well within the silhouette.
@@ -81,13 +84,13 @@ fn lose_nothing_from_afar(levels: &[u32], count: usize, structures: &[&str]) {
 #[test]
 fn no_ray_is_lost_from_two_to_a_hundred_radii() {
     lose_nothing_from_afar(&[4], 1_000, &all_names());
-    lose_nothing_from_afar(&[7], 2_000, &["grid", "kdtree", "bvh-stack", "ploc-stack"]);
+    lose_nothing_from_afar(&[7], 2_000, &["grid", "kdtree", "bvh-stack", "ploc-stack", "bih"]);
 }
 
 #[test]
 #[ignore = "a million rays; CI traces a sample of them"]
 fn no_ray_of_a_million_is_lost_from_two_to_a_hundred_radii() {
-    lose_nothing_from_afar(&[4, 5, 6, 7], 100_000, &["grid", "kdtree", "bvh", "bvh-stack", "ploc-stack"]);
+    lose_nothing_from_afar(&[4, 5, 6, 7], 100_000, &["grid", "kdtree", "bvh", "bvh-stack", "ploc-stack", "bih"]);
 }
 
 /// The check above can fail: the former test loses rays.
@@ -238,7 +241,7 @@ fn a_closed_cube_has_no_holes() {
     let mesh = room(64, Vec3::ONE);
     let size = Size { width: 512, height: 512 };
     on_each_backend(|backend| {
-        for name in ["grid", "kdtree", "bvh", "bvh-stack", "ploc-stack", "grid-coop", "grid-packet"] {
+        for name in ["grid", "kdtree", "bvh", "bvh-stack", "ploc-stack", "bih", "grid-coop", "grid-packet"] {
             for (direction, up) in [(Vec3::NEG_Z, Vec3::Y), (Vec3::X, Vec3::Y)] {
                 let view = axis_view(&mesh, direction, up, 90.0);
                 assert_eq!(holes(backend, &mesh, name, &view, size), 0, "{name}");

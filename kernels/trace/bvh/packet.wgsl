@@ -6,6 +6,7 @@
 
 //!include lib/cooperative.wgsl
 //!include trace/bvh/node.wgsl
+//!include trace/bvh/widened.wgsl
 
 var<workgroup> stack: array<u32, STACK_SIZE>;
 var<workgroup> stack_depth: u32;
@@ -112,6 +113,7 @@ fn traverse(ray: Ray, limit: f32, any: bool, alive: bool) -> u32 {
     var best = Best(limit, MISS);
     var searching = alive; // an occluded ray no longer votes
     var node = start_packet();
+    let wide = widened(ray);
     while (node != EMPTY) {
         if (is_leaf(node)) {
             if (searching) {
@@ -124,7 +126,7 @@ fn traverse(ray: Ray, limit: f32, any: bool, alive: bool) -> u32 {
             }
             node = leave_leaf(searching);
         } else {
-            node = visit_inner(ray, node, best.t, searching);
+            node = visit_inner(wide, node, best.t, searching);
         }
     }
     return best.triangle_ref;

@@ -2,10 +2,12 @@
 //
 // Two loops alternate (Aila and Laine 2009): down to a leaf, then through its triangles. Where several rays share an
 // instruction stream, none of them pays for both in every step. The stack keeps the distance of each node's box, so
-// that a node that lies beyond a hit found meanwhile is dropped without being read.
+// that a node that lies beyond a hit found meanwhile is dropped without being read. Without CULL, boxes are compared
+// with the ray's limit only, and never with a hit.
 
 //!include lib/independent.wgsl
 //!include trace/bvh/node.wgsl
+//!include trace/bvh/widened.wgsl
 
 var<private> stack: array<u32, STACK_SIZE>; // references, which need no read when they are popped
 var<private> stack_t: array<f32, STACK_SIZE>;
@@ -64,9 +66,10 @@ fn traverse(ray: Ray, limit: f32, any: bool, alive: bool) -> u32 {
         return MISS;
     }
     var best = Best(limit, MISS);
-    var walk = start_walk(ray, limit);
+    let wide = widened(ray);
+    var walk = start_walk(wide, limit);
     loop {
-        walk_to_leaf(ray, best.t, &walk);
+        walk_to_leaf(wide, select(limit, best.t, CULL), &walk);
         if (walk.node == EMPTY) {
             break;
         }
@@ -74,7 +77,7 @@ fn traverse(ray: Ray, limit: f32, any: bool, alive: bool) -> u32 {
         if (test_triangles(ray, leaf_first(walk.node), leaf_count(walk.node), any, &best)) {
             break;
         }
-        pop(best.t, &walk);
+        pop(select(limit, best.t, CULL), &walk);
     }
     return best.triangle_ref;
 }

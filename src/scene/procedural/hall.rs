@@ -3,7 +3,7 @@
 
 use super::mesh::{MaterialId, Mesh, fit, segments};
 use super::shapes::{profile, turn};
-use super::{Parameter, SceneInfo, Values, assemble};
+use super::{Parameter, SceneInfo, Values, accept, assemble};
 use crate::scene::{Light, Material, Scene};
 use glam::{Affine3A, Vec3};
 use std::f32::consts::{PI, TAU};
@@ -12,6 +12,7 @@ pub(super) const INFO: SceneInfo = SceneInfo {
     name: "hall",
     character: "enclosed: a museum hall with columns, four lights, many mirrors",
     parameters: &[Parameter::triangles(60_000, 15_000)],
+    check: accept,
     build,
 };
 

@@ -11,6 +11,7 @@ mod room;
 mod scan;
 mod shapes;
 mod sphereflake;
+mod spikes;
 mod stadium;
 mod surface_nets;
 mod teapot;
@@ -51,6 +52,8 @@ pub struct SceneInfo {
     pub character: &'static str,
     /// The parameters that it accepts.
     pub parameters: &'static [Parameter],
+    /// Refuses values that cannot be together, and says why.
+    check: fn(&Values) -> Result<(), String>,
     build: fn(&Values) -> Scene,
 }
 
@@ -70,8 +73,13 @@ struct Values<'a> {
 impl Values<'_> {
     /// The requested number of triangles.
     fn triangles(&self) -> usize {
-        let index = self.parameters.iter().position(|p| p.name == "triangles");
-        index.map_or(0, |i| self.values[i] as usize)
+        self.get("triangles") as usize
+    }
+
+    /// The value of a parameter; 0 if the scene does not have it.
+    fn get(&self, name: &str) -> u64 {
+        let index = self.parameters.iter().position(|p| p.name == name);
+        index.map_or(0, |i| self.values[i])
     }
 }
 
@@ -111,7 +119,11 @@ fn parse(spec: &str) -> Result<(&'static SceneInfo, Vec<u64>)> {
         let (index, value) = setting_of(info, spec, setting)?;
         values[index] = value;
     }
-    Ok((info, values))
+    let all = Values { parameters: info.parameters, values };
+    if let Err(problem) = (info.check)(&all) {
+        return Err(Error::argument(spec, problem, example(info)));
+    }
+    Ok((info, all.values))
 }
 
 /// Parses `key=value`: the index of the parameter, and its value.
@@ -138,6 +150,11 @@ fn setting_of(info: &SceneInfo, spec: &str, setting: &str) -> Result<(usize, u64
             format!("give a number from {min} to {max}"),
         )),
     }
+}
+
+/// For scenes all of whose values can be together.
+fn accept(_: &Values) -> Result<(), String> {
+    Ok(())
 }
 
 fn example(info: &SceneInfo) -> String {

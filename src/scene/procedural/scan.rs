@@ -1,11 +1,12 @@
 //! `scan`: one closed surface of triangles of uniform size, similar to the scanned bunny and dragon: a cat on a plinth,
-//! meshed by surface nets.
+//! meshed by surface nets. With spikes it is the shape with points: there a kd-tree has more nodes and references than
+//! for a smooth one.
 
 use super::mesh::Mesh;
 use super::noise::{fractal, noise3};
 use super::shapes::curve;
 use super::surface_nets::surface_net;
-use super::{Parameter, SceneInfo, Values, assemble};
+use super::{Parameter, SceneInfo, Values, assemble, spikes};
 use crate::math::Vertex;
 use crate::scene::{Light, Material, Scene, Triangle, normals};
 use glam::Vec3;
@@ -13,16 +14,35 @@ use glam::Vec3;
 pub(super) const INFO: SceneInfo = SceneInfo {
     name: "scan",
     character: "uniform: one statue, similar to a scan, with triangles of uniform size, one light",
-    parameters: &[Parameter::triangles(70_000, 1_000)],
+    parameters: &[Parameter::triangles(70_000, 1_000), SPIKES],
+    check,
     build,
 };
+
+const SPIKES: Parameter = Parameter {
+    name: "spikes",
+    meaning: "long thin spikes that grow out of the statue; their triangles are part of the number above",
+    default: 0,
+    min: 0,
+    max: 100_000,
+};
+
+/// Refuses spikes that leave too little to the statue.
+fn check(values: &Values) -> Result<(), String> {
+    let most = values.triangles() * 3 / 4 / spikes::TRIANGLES;
+    match values.get(SPIKES.name) as usize {
+        count if count <= most => Ok(()),
+        _ => Err(format!("with {} triangles there are at most {most} spikes", values.triangles())),
+    }
+}
 
 /// The lowest corner and the edge length of a cube around the statue.
 const MIN: Vec3 = Vec3::new(-1.15, -0.1, -1.15);
 const SIZE: f32 = 2.3;
 
 fn build(values: &Values) -> Scene {
-    let target = values.triangles();
+    let count = values.get(SPIKES.name) as usize;
+    let target = values.triangles() - count * spikes::TRIANGLES;
     let statue = Statue::new();
     let net = |cell: f32| surface_net(MIN, SIZE, cell, RELIEF, |p| statue.distance(p));
     // The number of triangles grows slightly faster than the inverse square of the cell size, because smaller cells
@@ -48,6 +68,10 @@ fn build(values: &Values) -> Scene {
     mesh.vertices = found.positions.iter().map(|&p| Vertex::new(p, Vec3::ZERO)).collect();
     mesh.triangles = found.triangles.iter().map(|&vertices| Triangle { vertices, material: stone }).collect();
     normals::smooth(&mut mesh.vertices, &mesh.triangles);
+    if count > 0 {
+        spikes::grow(&mut mesh, count, stone);
+        normals::smooth(&mut mesh.vertices, &mesh.triangles);
+    }
     let light = Light::new(Vec3::new(1.4, 6.2, 2.7), Vec3::splat(1.0));
     assemble(mesh, vec![light], Vec3::new(0.10, 0.11, 0.13), None)
 }

@@ -2,7 +2,7 @@
 //! radius, on a chequered floor. The two largest generations are mirrors.
 
 use super::mesh::{MaterialId, Mesh, fit, segments};
-use super::{Parameter, SceneInfo, Values, assemble};
+use super::{Parameter, SceneInfo, Values, accept, assemble};
 use crate::scene::{Light, Material, Scene};
 use glam::{Quat, Vec3};
 
@@ -10,6 +10,7 @@ pub(super) const INFO: SceneInfo = SceneInfo {
     name: "sphereflake",
     character: "clusters at every scale: spheres on spheres, the largest are mirrors, three lights",
     parameters: &[Parameter::triangles(160_000, 2_000)],
+    check: accept,
     build,
 };
 

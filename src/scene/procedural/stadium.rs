@@ -4,7 +4,7 @@
 
 use super::mesh::{Mesh, fit, segments};
 use super::shapes::{profile, turn};
-use super::{Parameter, SceneInfo, Values, assemble};
+use super::{Parameter, SceneInfo, Values, accept, assemble};
 use crate::scene::{Light, Material, Scene};
 use glam::{Affine3A, Quat, Vec2, Vec3};
 
@@ -12,6 +12,7 @@ pub(super) const INFO: SceneInfo = SceneInfo {
     name: "stadium",
     character: "teapot in a stadium: half of the triangles in a thousandth of the width, four lights",
     parameters: &[Parameter::triangles(100_000, 8_000)],
+    check: accept,
     build,
 };
 

@@ -2,7 +2,7 @@
 
 use super::mesh::Mesh;
 use super::noise::{fractal, noise2, ridged};
-use super::{Parameter, SceneInfo, Values, assemble};
+use super::{Parameter, SceneInfo, Values, accept, assemble};
 use crate::math::Vertex;
 use crate::scene::{Light, Material, Scene, Triangle, normals};
 use glam::{Vec2, Vec3};
@@ -12,6 +12,7 @@ pub(super) const INFO: SceneInfo = SceneInfo {
     name: "terrain",
     character: "heightfield: fractal mountains with lakes, flat bounds, one light",
     parameters: &[Parameter::triangles(130_000, 1_000)],
+    check: accept,
     build,
 };
 

@@ -72,7 +72,7 @@ impl Backend for CpuDevice {
         let depth = structure.stack_depth();
         if depth as usize + 1 >= STACK_SIZE {
             let problem = format!("{depth} levels are more than the twins' stack of {STACK_SIZE} holds");
-            return Err(Error::too_large("the tree", problem, "set another max_leaf"));
+            return Err(Error::too_large("the tree", problem, "set another max_depth or max_leaf"));
         }
         if method.traversal.cooperative && method.group.size() as usize > GROUP {
             let Group { width, height } = method.group;

@@ -125,9 +125,9 @@ pub struct Rays {
 }
 
 impl Method {
-    /// The same rays by another traversal, which takes no parameters.
-    pub fn by(self, traversal: &'static Traversal) -> Method {
-        Method { traversal, parameters: Parameters::NONE, ..self }
+    /// The same rays by another traversal.
+    pub fn by(self, traversal: &'static Traversal, parameters: Parameters) -> Method {
+        Method { traversal, parameters, ..self }
     }
 
     /// True if a frame with this many reflections takes several passes.

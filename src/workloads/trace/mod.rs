@@ -3,6 +3,7 @@
 mod algorithm;
 pub mod artifacts;
 pub mod backend;
+pub mod bih;
 pub mod brute;
 pub mod building;
 pub mod bvh;

@@ -1,7 +1,7 @@
 //! The names of `--structure`, in the order of tables.
 
 use super::algorithm::Algorithm;
-use super::{brute, bvh, grid, kdtree};
+use super::{bih, brute, bvh, grid, kdtree};
 
 static ALGORITHMS: &[&Algorithm] = &[
     &grid::dda::GRID,
@@ -9,6 +9,7 @@ static ALGORITHMS: &[&Algorithm] = &[
     &bvh::packet::BVH,
     &bvh::stack::BVH_STACK,
     &bvh::stack::PLOC_STACK,
+    &bih::stack::BIH,
     &grid::coop::GRID_COOP,
     &grid::packet::GRID_PACKET,
     &brute::scan::BRUTE,

@@ -197,7 +197,8 @@ impl Selection {
         })
     }
 
-    fn find(&self, key: &str) -> Option<&str> {
+    /// The value of an option; `None` if the algorithm has no such option.
+    pub(crate) fn find(&self, key: &str) -> Option<&str> {
         let index = self.info().options().position(|o| o.key == key)?;
         Some(&self.values[index])
     }

@@ -20,7 +20,7 @@ use crate::workloads::trace::backend::{Backend, Config, CountedPixel, GivenRay, 
 use crate::workloads::trace::brute;
 use crate::workloads::trace::intersect::TriangleTest;
 use crate::workloads::trace::method::Rays;
-use crate::workloads::trace::{Agreement, Built, CpuBackend, Method, Structure, bvh, path};
+use crate::workloads::trace::{Agreement, Built, CpuBackend, Method, Parameters, Structure, bvh, path};
 use std::sync::Arc;
 
 /// A colour channel may differ by this many of 255 levels: `pow` of both sides is good to a few units in the last
@@ -196,7 +196,7 @@ impl Verifier {
             turns.map(|(a, b)| GivenRay { direction: ray.direction + (x * a + y * b) * TURN, ..ray })
         };
         let rays: Vec<GivenRay> = pixels.iter().flat_map(turned).collect();
-        let own = method.by(&bvh::stack::STACK);
+        let own = method.by(&bvh::stack::STACK, bvh::stack::defaults());
         let hits = self.cpu.prepare(&self.scene, &*self.tree.structure, own)?.trace(&rays, false)?;
         Ok(hits.chunks(8).filter(|hits| hits.iter().all(|hit| hit.triangle != MISS)).count() as u64)
     }
@@ -209,7 +209,7 @@ impl Verifier {
         let place = match place {
             Some(place) => place,
             None => {
-                let own = Method { tiles: 1, ..method.by(&bvh::stack::STACK) };
+                let own = Method { tiles: 1, ..method.by(&bvh::stack::STACK, bvh::stack::defaults()) };
                 let answers = {
                     let mut twin = self.cpu.prepare(&self.scene, &*self.tree.structure, own)?;
                     Answers::counted(twin.as_mut(), (config, view, size), false)?
@@ -249,7 +249,10 @@ impl Verifier {
         let chosen: Vec<usize> =
             (0..count).map(|i| (i as u64 * size.pixels() as u64 / count as u64) as usize).collect();
         let given: Vec<GivenRay> = chosen.iter().map(|&pixel| path::primary_ray(method, view, size, pixel)).collect();
-        let hits = self.cpu.prepare(&self.scene, &self.brute, method.by(&brute::scan::SCAN))?.trace(&given, false)?;
+        let hits = self
+            .cpu
+            .prepare(&self.scene, &self.brute, method.by(&brute::scan::SCAN, Parameters::NONE))?
+            .trace(&given, false)?;
         let differing = hits.iter().zip(&chosen).filter(|&(hit, &pixel)| {
             hit.triangle != answers.pixels[pixel].triangle || hit.t.to_bits() != answers.distances[pixel].to_bits()
         });

@@ -3,6 +3,7 @@
 use super::{build, build_as, scenes};
 use rtbench::scene::Scene;
 use rtbench::workloads::trace::Structure;
+use rtbench::workloads::trace::bih::{Bih, BihNode};
 use rtbench::workloads::trace::brute::Brute;
 use rtbench::workloads::trace::bvh::{Bvh, BvhNode};
 use rtbench::workloads::trace::grid::Grid;
@@ -77,6 +78,92 @@ fn in_a_bvh() {
         ("wrong depth", "depth is", &|b| b.depth += 1),
         ("unreachable pair", "cannot be reached", &|b| b.nodes.extend([BvhNode::NONE; 2])),
         ("odd number of nodes", "even number", &|b| b.nodes.push(BvhNode::NONE)),
+        ("no nodes", "even number", &|b| b.nodes.clear()),
+        ("no dummy sibling", "no dummy", &|b| b.nodes[1] = b.nodes[0]),
+    ];
+    assert_noticed(&good, damages);
+}
+
+/// Divided triangles: the leaves of each together must hold all of it.
+#[test]
+fn in_a_bvh_with_spatial_splits() {
+    let scene = scenes::beams(200, 9);
+    let good: Bvh = build_as("bvh:build=spatial,max_leaf=1,alpha=0", &scene);
+    good.validate(&scene).unwrap();
+    assert!(good.triangle_refs.len() > 220, "hardly any triangle is divided");
+    let verdict = |damage: &dyn Fn(&mut Bvh)| {
+        let mut broken = good.clone();
+        damage(&mut broken);
+        broken.validate(&scene).err()
+    };
+    // A leaf that ends too early, or begins too late
+    let mut uncovered = 0;
+    for leaf in (0..good.nodes.len()).filter(|&i| good.nodes[i].count > 0) {
+        for axis in 0..3 {
+            let part = 0.3 * (good.nodes[leaf].max[axis] - good.nodes[leaf].min[axis]);
+            for damage in
+                [&|b: &mut Bvh| b.nodes[leaf].max[axis] -= part, &|b: &mut Bvh| b.nodes[leaf].min[axis] += part]
+                    as [&dyn Fn(&mut Bvh); 2]
+            {
+                uncovered += usize::from(verdict(damage).is_some_and(|why| why.contains("do not cover it")));
+            }
+        }
+    }
+    assert!(uncovered > 0, "no leaf that is too small was noticed by what it does not cover");
+    // A leaf whose triangle is another one, which is divided as well
+    let times = |triangle: u32| good.triangle_refs.iter().filter(|r| r.triangle == triangle).count();
+    let divided: Vec<usize> =
+        (0..good.triangle_refs.len()).filter(|&i| times(good.triangle_refs[i].triangle) > 1).collect();
+    for pair in divided.windows(2).filter(|p| good.triangle_refs[p[0]] != good.triangle_refs[p[1]]) {
+        let damage = |b: &mut Bvh| b.triangle_refs[pair[0]] = b.triangle_refs[pair[1]];
+        assert!(verdict(&damage).is_some(), "a part of triangle {} is lost", good.triangle_refs[pair[0]].triangle);
+    }
+}
+
+#[test]
+fn in_a_bih() {
+    let good: Bih = build_as("bih", &scene());
+    let inner = 2 + good.nodes[2..].iter().position(|n| !n.is_leaf()).unwrap();
+    let leaf = good.nodes.iter().position(|n| n.is_leaf() && n.count() > 1).unwrap();
+    let moved =
+        |n: BihNode, low: f32, high: f32| BihNode::inner(n.axis(), n.child(), n.low_end() + low, n.high_begin() + high);
+    let linked = |n: BihNode, child: u32| BihNode::inner(n.axis(), child, n.low_end(), n.high_begin());
+    let damages: &[Damage<Bih>] = &[
+        ("lower child cut off", "lower child ends", &|b| b.nodes[inner] = moved(b.nodes[inner], -1e-3, 0.0)),
+        ("lower child too long", "lower child ends", &|b| b.nodes[inner] = moved(b.nodes[inner], 1e-3, 0.0)),
+        ("upper child cut off", "upper child begins", &|b| b.nodes[inner] = moved(b.nodes[inner], 0.0, 1e-3)),
+        ("upper child too long", "upper child begins", &|b| b.nodes[0] = moved(b.nodes[0], 0.0, -1e-3)),
+        ("NaN plane", "lower child ends", &|b| b.nodes[0] = moved(b.nodes[0], f32::NAN, 0.0)),
+        ("other axis", "", &|b| {
+            let n = b.nodes[0];
+            b.nodes[0] = BihNode::inner((n.axis() + 1) % 3, n.child(), n.low_end(), n.high_begin());
+        }),
+        ("odd link", "the children of node", &|b| b.nodes[inner] = linked(b.nodes[inner], 3)),
+        ("link out of range", "behind the last node", &|b| {
+            b.nodes[inner] = linked(b.nodes[inner], b.nodes.len() as u32);
+        }),
+        ("link to the root", "begin at 0", &|b| b.nodes[inner] = linked(b.nodes[inner], 0)),
+        ("link to itself", "reached twice", &|b| b.nodes[inner] = linked(b.nodes[inner], inner as u32 & !1)),
+        ("link to a cousin", "", &|b| b.nodes[inner] = linked(b.nodes[inner], b.nodes[0].child())),
+        ("dropped last triangle reference", "behind the last triangle reference", &|b| {
+            b.triangle_refs.pop();
+        }),
+        ("one triangle reference too many", "in leaves", &|b| b.triangle_refs.push(b.triangle_refs[0])),
+        ("doubled triangle", "another place", &|b| b.triangle_refs[1] = b.triangle_refs[0]),
+        ("swapped triangle references", "", &|b| {
+            let last = b.triangle_refs.len() - 1;
+            b.triangle_refs.swap(0, last);
+        }),
+        ("wrong vertices", "has vertices", &|b| b.triangle_refs[3].vertices.swap(0, 1)),
+        ("triangle out of range", "does not exist", &|b| b.triangle_refs[3].triangle = 1 << 30),
+        ("leaf reaches too far", "", &|b| b.nodes[leaf].words[0] += 1),
+        ("empty leaf", "is empty", &|b| b.nodes[leaf].words[0] = 0),
+        ("second word of a leaf", "second word", &|b| b.nodes[leaf].words[1] = 1),
+        ("leaf begins too late", "not at", &|b| b.nodes[leaf].link += 4),
+        ("wrong depth", "depth is", &|b| b.depth += 1),
+        ("wrong bounds", "bounds", &|b| b.bounds.max.x += 1.0),
+        ("unreachable pair", "cannot be reached", &|b| b.nodes.extend([BihNode::leaf(0, 0); 2])),
+        ("odd number of nodes", "even number", &|b| b.nodes.push(BihNode::leaf(0, 0))),
         ("no nodes", "even number", &|b| b.nodes.clear()),
         ("no dummy sibling", "no dummy", &|b| b.nodes[1] = b.nodes[0]),
     ];

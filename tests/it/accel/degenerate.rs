@@ -99,7 +99,7 @@ fn ploc_builds_everything_else() {
 fn no_structure_multiplies_its_records_without_bound() {
     for scene in chains().into_iter().chain(overlapping()) {
         for selection in
-            ["grid", "kdtree", "kdtree:thin=0,small_leaf=0", "kdtree:build=sort", "kdtree:build=min-max", "bvh"]
+            ["grid", "kdtree", "kdtree:thin=0,small_leaf=0", "kdtree:build=sort", "kdtree:build=min-max", "bvh", "bih"]
         {
             let built = made(selection, &scene);
             let triangle_refs = built.structure.triangle_refs().len();
@@ -110,6 +110,25 @@ fn no_structure_multiplies_its_records_without_bound() {
             );
         }
     }
+}
+
+/// Spatial splits everywhere: at most four references a triangle, and the same tree for any number of threads where
+/// that bound has an effect.
+#[test]
+fn spatial_splits_end_at_four_references_a_triangle() {
+    let mut bounded = 0;
+    for scene in chains().into_iter().chain(overlapping()) {
+        let selection = "bvh:build=spatial,max_leaf=1,alpha=0,spatial_depth=440,max_depth=440";
+        let built = made(selection, &scene);
+        let triangle_refs = built.structure.triangle_refs().len();
+        assert!(triangle_refs <= 4 * COUNT, "{}: {triangle_refs} triangle references", scene.name);
+        if triangle_refs > 3 * COUNT {
+            bounded += 1;
+            assert!(bytes(&build(selection, &scene, 1)) == bytes(&built.structure), "{}", scene.name);
+            assert_valid(selection, &scene);
+        }
+    }
+    assert!(bounded > 0, "the bound has no effect in any scene");
 }
 
 #[test]

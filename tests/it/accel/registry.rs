@@ -3,7 +3,7 @@
 use super::{SELECTIONS, scenes};
 use rtbench::Error;
 use rtbench::workloads::trace::method::Group;
-use rtbench::workloads::trace::{Selection, algorithms, bvh, grid, kdtree};
+use rtbench::workloads::trace::{Parameters, Selection, algorithms, bih, bvh, grid, kdtree};
 
 fn selection(text: &str) -> Selection {
     Selection::parse(text).unwrap()
@@ -12,7 +12,7 @@ fn selection(text: &str) -> Selection {
 #[test]
 fn names_and_traversals() {
     let names: Vec<&str> = algorithms().iter().map(|v| v.name).collect();
-    let order = ["grid", "kdtree", "bvh", "bvh-stack", "ploc-stack", "grid-coop", "grid-packet", "brute"];
+    let order = ["grid", "kdtree", "bvh", "bvh-stack", "ploc-stack", "bih", "grid-coop", "grid-packet", "brute"];
     let known: Vec<&str> = names.iter().copied().filter(|name| order.contains(name)).collect();
     assert_eq!(known, order);
     let aliases = algorithms().iter().map(|a| a.alias).filter(|alias| !alias.is_empty());
@@ -37,7 +37,14 @@ fn names_and_traversals() {
     assert_eq!(search("kdtree:stack=32"), (32, true, false));
     assert_eq!(search("kdtree:memory=private"), (4, true, true));
     assert_eq!(method("bvh:packet=8x4").group, Group { width: 8, height: 4 });
-    assert_eq!(method("grid"), method("bvh-stack").by(&grid::dda::DDA));
+    assert_eq!(method("bih").traversal, &bih::stack::STACK);
+    let flags = |text| ["CULL", "WIDENED"].map(|name| method(text).parameters.flag(name));
+    assert_eq!(flags("bvh-stack"), [true, false]);
+    assert_eq!(flags("bvh-stack:build=sweep,cull=off"), [false, false]);
+    assert_eq!(flags("bvh-stack:build=spatial"), [true, true]);
+    assert_eq!([flags("ploc-stack"), flags("ploc-stack:preset=slow")], [[true, false], [true, true]]);
+    assert_eq!(method("bvh-stack").parameters, bvh::stack::defaults());
+    assert_eq!(method("grid"), method("bvh-stack").by(&grid::dda::DDA, Parameters::NONE));
     assert_eq!(method("grid").group, Group::SQUARE);
 }
 
@@ -58,6 +65,9 @@ fn variants_are_canonical() {
     assert_eq!(selection("bvh:").variant(), "default");
     assert_eq!(selection("bvh:bins=16").variant(), "default");
     assert_eq!(selection("bvh:max_leaf=08,bins=8").variant(), "bins=8,max_leaf=8");
+    assert_eq!(selection("bvh-stack:cull=off,max_leaf=3,build=sweep").variant(), "build=sweep,max_leaf=3,cull=off");
+    let every_node = selection("bvh-stack:sorting=every-node,build=sweep,max_leaf=3,alpha=1e-5");
+    assert_eq!(every_node.variant(), "build=sweep,max_leaf=3,sorting=every-node");
     assert_eq!(selection("grid:factor=4.0").variant(), "default");
     assert_eq!(selection("grid:factor=2.50,x=auto").variant(), "factor=2.5");
     assert_eq!(selection("grid:z=07,y=9,factor=4").variant(), "y=9,z=7");
@@ -127,6 +137,15 @@ fn an_option_without_effect_is_refused() {
         ("kdtree:build=min-max,max_depth=8", "max_depth has no effect: build=min-max"),
         ("grid:factor=2.5,z=7", "factor has no effect: z"),
         ("bvh:kt=inf,ki=3", "ki has no effect: costs"),
+        ("bvh:build=sweep,bins=8", "bins has no effect: build=sweep"),
+        ("bvh:bins=8,build=spatial", "those of spatial splits are spatial_bins"),
+        ("bvh:sorting=every-node", "sorting has no effect: build=binned"),
+        ("bvh-stack:build=spatial,sorting=every-node", "sorting has no effect: build=spatial"),
+        ("bvh:axes=longest", "axes has no effect: build=binned"),
+        ("bvh:build=sweep,alpha=0.5", "alpha has no effect: build=sweep"),
+        ("bvh:spatial_bins=8", "spatial_bins has no effect: build=binned"),
+        ("bvh:spatial_depth=8", "spatial_depth has no effect: build=binned"),
+        ("bvh:build=sweep,overlap=below", "overlap has no effect: build=sweep"),
     ] {
         let error = Selection::parse(text).expect_err(text);
         assert!(matches!(error, Error::Input(_)) && error.exit_code() == 2);
@@ -156,7 +175,11 @@ fn equal_trees_are_shared() {
 #[test]
 fn what_it_does_not_know_it_names_with_what_there_is() {
     let cases = [
-        ("octree", "no structure 'octree'", "grid, kdtree, bvh, bvh-stack, ploc-stack, grid-coop, grid-packet, brute"),
+        (
+            "octree",
+            "no structure 'octree'",
+            "grid, kdtree, bvh, bvh-stack, ploc-stack, bih, grid-coop, grid-packet, brute",
+        ),
         ("", "no structure ''", "grid"),
         ("bvh:depth=3", "no option 'depth'", "bins, max_leaf"),
         ("brute:x=1", "no option 'x'", "group, shadows, tiles"),
@@ -166,6 +189,11 @@ fn what_it_does_not_know_it_names_with_what_there_is() {
         ("bvh:bins=0", "'0' is no value for bins", "from 2 to 32"),
         ("bvh:bins", "'' is no value for bins", "from 2 to 32"),
         ("bvh:max_leaf=16", "'16'", "from 1 to 15"),
+        ("bvh:build=sah", "'sah' is no value for build", "binned, sweep, spatial"),
+        ("bvh:max_depth=441", "'441'", "from 1 to 440"),
+        ("bvh-stack:cull=no", "'no'", "on, off"),
+        ("bvh:cull=off", "no option 'cull'", "vote"),
+        ("bih:max_leaf=0", "'0'", "from 1 to 15"),
         ("bvh:bins=99999999999999999999", "is no value", "from 2 to 32"),
         ("grid:x=-1", "'-1'", "'auto' or a whole number from 1"),
         ("grid:factor=NaN", "'NaN'", "a number from"),

@@ -51,6 +51,29 @@ fn changed(name: &str, count: usize, change: impl Fn(usize, Vec3) -> Vec3) -> Sc
     scene
 }
 
+/// Every next triangle is ten times farther away: greedy splits take one triangle off at a time.
+pub fn powers_of_ten() -> Scene {
+    let corners = |i: i32| Vec3::splat(10_f32.powi(i / 8) * (1.0 + 0.1 * (i % 8) as f32));
+    soup("powers of ten", (-240..240).map(|i| [corners(i), corners(i), corners(i)]))
+}
+
+/// Long thin triangles, whose boxes hold little of them, among many small ones: where spatial splits pay.
+pub fn beams(count: usize, seed: u64) -> Scene {
+    let mut next = numbers(seed);
+    soup(
+        "beams",
+        (0..count).map(|i| {
+            let at = point(&mut next);
+            if i % 10 == 0 {
+                let along = point(&mut next);
+                [at * 0.3, at * 0.3 + along, at * 0.3 + along * 0.95 + point(&mut next) * 0.02]
+            } else {
+                [at, at + point(&mut next) * 0.03, at + point(&mut next) * 0.03]
+            }
+        }),
+    )
+}
+
 pub fn ordinary() -> Vec<Scene> {
     let mut mixed = random("tiny ones in a huge one", 600, 0.01, 0.001, 5);
     let huge = soup("huge", [[Vec3::splat(-50.0), Vec3::new(100.0, -50.0, 3.0), Vec3::new(0.0, 100.0, 40.0)]]);

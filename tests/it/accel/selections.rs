@@ -1,5 +1,5 @@
-//! Thousands of mutated selections: each is read or refused with one line, what is read is written in one way, and builds
-//! a structure that is valid, or says why it does not.
+//! Thousands of mutated selections: each is read or refused with one line, what is read is written in one way, and
+//! builds a structure that is valid, or says why it does not.
 
 use super::{SELECTIONS, scenes};
 use crate::support::random;

@@ -4,7 +4,7 @@ use super::build;
 use rtbench::scene::Scene;
 
 /// A scene of the catalogue, or `None` (said on stderr) where there are no scenes.
-fn model(name: &str) -> Option<Scene> {
+pub fn model(name: &str) -> Option<Scene> {
     let Some(folder) = std::env::var_os("RTBENCH_SCENES").filter(|folder| !folder.is_empty()) else {
         eprintln!("NOT RUN: set RTBENCH_SCENES to the folder that holds {name}");
         return None;

@@ -142,3 +142,52 @@ fn scenes_have_the_described_properties() {
         }
     }
 }
+
+#[test]
+fn spikes_are_part_of_the_requested_triangles() {
+    let (plain, spiky) = (load("scan:triangles=20000"), load("scan:triangles=20000,spikes=100"));
+    assert_eq!(spiky.name, "scan:triangles=20000,spikes=100");
+    spiky.check().unwrap();
+    let ratio = spiky.triangles.len() as f64 / 20_000.0;
+    assert!((0.9..=1.1).contains(&ratio), "{ratio}");
+    assert_eq!(load("scan:triangles=20000,spikes=0").content_hash(), plain.content_hash());
+    assert!(spiky.content_hash() != plain.content_hash());
+    assert_eq!(spiky.content_hash(), load("scan:triangles=20000,spikes=100").content_hash());
+    assert_eq!(spiky.degenerate_triangles, 0);
+    assert!(spiky.vertices.iter().all(|v| v.normal.is_normalized()));
+    // They stand out, by at least half of the shortest on some side
+    let (inner, outer) = (plain.bounds(), spiky.bounds());
+    assert!((outer.extent() - inner.extent()).max_element() > 0.1, "{inner:?} {outer:?}");
+}
+
+#[test]
+fn more_spikes_than_triangles_allow_are_refused() {
+    let error = scene::load("scan:triangles=1000,spikes=14").unwrap_err();
+    assert_eq!(error.exit_code(), 2);
+    assert!(error.to_string().contains("at most 13 spikes"), "{error}");
+    load("scan:triangles=1000,spikes=13");
+    assert!(scene::load("scan:spikes=100001").unwrap_err().to_string().contains("out of range"));
+    assert!(scene::load("room:spikes=3").unwrap_err().to_string().contains("no parameter"));
+}
+
+/// By the memory model of 2010 a kd-tree takes more than a BVH exactly if 16 L + 4 R > 48 N, with
+/// leaves, references and nodes of a BVH a triangle: not on the smooth shape, but on the one with points.
+#[test]
+fn a_kd_tree_takes_more_than_a_bvh_on_the_spiky_shape_alone() {
+    use rtbench::workloads::trace::Selection;
+    let properties = |structure: &str, scene: &Scene| {
+        Selection::parse(structure).unwrap().build(scene, 0).unwrap().structure.properties(scene)
+    };
+    let sizes = |name: &str| {
+        let scene = load(name);
+        let triangles = scene.triangles.len() as f64;
+        let kd = properties("kdtree:exact_below=536870912,small_leaf=0,max_depth=60", &scene);
+        let bvh = properties("bvh:build=sweep,max_leaf=3", &scene);
+        let leaves = f64::from(kd.leaves.unwrap()) / triangles;
+        let nodes = f64::from(bvh.nodes.unwrap() - 1) / triangles;
+        (leaves, 16.0 * leaves + 4.0 * kd.references_per_triangle.unwrap(), 48.0 * nodes)
+    };
+    let (smooth, spiky) = (sizes("scan:triangles=104000"), sizes("scan:triangles=104000,spikes=1000"));
+    assert!(smooth.1 < smooth.2 && spiky.1 > spiky.2, "{smooth:?} {spiky:?}");
+    assert!(spiky.0 > smooth.0, "more leaves a triangle: {smooth:?} {spiky:?}");
+}

@@ -5,7 +5,7 @@ mod furniture;
 
 use super::mesh::{MaterialId, Mesh, fit, segments};
 use super::shapes::curve;
-use super::{Parameter, SceneInfo, Values, assemble};
+use super::{Parameter, SceneInfo, Values, accept, assemble};
 use crate::scene::{Light, Material, Scene};
 use furniture::{chair, chair_places, cup, shelf, table};
 use glam::{Affine3A, Quat, Vec2, Vec3};
@@ -14,6 +14,7 @@ pub(super) const INFO: SceneInfo = SceneInfo {
     name: "room",
     character: "furnished room: long thin triangles and dense chairs, six lights, few mirrors",
     parameters: &[Parameter::triangles(80_000, 20_000)],
+    check: accept,
     build,
 };
 

@@ -57,7 +57,7 @@ impl Rows {
 
     /// Half the surface area in units of `1 / unit^2`; 0 or NaN for an empty box.
     #[inline(always)]
-    fn half_area(&self, unit: f32) -> f32 {
+    pub(crate) fn half_area(&self, unit: f32) -> f32 {
         let e = Vec3A::from_vec4(self.max - self.min) * unit;
         e.dot(Vec3A::new(e.y, e.z, e.x))
     }

@@ -1,11 +1,11 @@
 //! BVH builder: top down, SAH over binned centroids, until at most `max_leaf` triangles are left.
 
-use crate::error::Result;
-use crate::math::Aabb;
+use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::workloads::trace::bvh::bins::{Binning, Item, Rows, Splitter};
 use crate::workloads::trace::bvh::partition::{Partitioner, Sides, centroid_bounds, halve};
 use crate::workloads::trace::bvh::{Bvh, BvhNode, MAX_DEPTH};
+use crate::workloads::trace::common::part::{Below, Part};
 use crate::workloads::trace::common::prims::{self, CHUNK, Prim};
 use crate::workloads::trace::common::sah::{CostModel, half_area, unit};
 use rayon::prelude::*;
@@ -20,12 +20,15 @@ pub struct Config {
     /// A node that could be a leaf is split all the same where that is cheaper. An infinite cost of a step makes it a
     /// leaf always.
     pub cost: CostModel,
+    /// Levels of inner nodes that no tree exceeds, 1 to [`crate::workloads::trace::bvh::DEPTH_LIMIT`].
+    pub max_depth: u32,
 }
 
 impl Default for Config {
     /// What explains the published node counts best.
     fn default() -> Self {
-        Config { bins: 16, max_leaf: 4, cost: CostModel { traversal: f64::INFINITY, intersection: 1.0 } }
+        let cost = CostModel { traversal: f64::INFINITY, intersection: 1.0 };
+        Config { bins: 16, max_leaf: 4, cost, max_depth: MAX_DEPTH }
     }
 }
 
@@ -43,13 +46,14 @@ pub fn build(scene: &Scene, config: &Config) -> Result<Bvh> {
     if items.is_empty() {
         return Ok(Bvh { bounds, nodes: vec![BvhNode::NONE; 2], triangle_refs: Vec::new(), depth: 0 });
     }
+    check_depth(items.len(), config.max_depth)?;
     let builder = Builder { config: *config, unit: unit(&bounds) };
     let rows = Rows { min: bounds.min.extend(0.0), max: bounds.max.extend(0.0) };
     let part = builder.grow(&mut items, 0, rows, 0);
     let depth = part.depth;
     let triangle_ref = |item: &Item| prims::triangle_ref(scene, item.prim.triangle());
     let (nodes, triangle_refs) = rayon::join(
-        || part.into_nodes(),
+        || part.into_nodes().0,
         || {
             let triangle_refs = items.par_iter().with_min_len(CHUNK).map(triangle_ref).collect();
             drop(items);
@@ -64,20 +68,6 @@ struct Builder {
     unit: f32,
 }
 
-/// A finished subtree: its root, and what lies below it.
-struct Part {
-    root: BvhNode,
-    below: Below,
-    depth: u32,
-}
-
-enum Below {
-    /// Pairs of siblings; links count from the start of this vector.
-    Nodes(Vec<BvhNode>),
-    /// Two subtrees that were built side by side.
-    Parts(Box<[Part; 2]>),
-}
-
 /// Buffers of one thread, reused from node to node.
 struct Scratch {
     splitter: Splitter,
@@ -88,7 +78,7 @@ struct Scratch {
 impl Builder {
     /// Builds the subtree of `items`, whose triangle references will begin at `first`; sides of large nodes in
     /// parallel.
-    fn grow(&self, items: &mut [Item], first: u32, bounds: Rows, depth: u32) -> Part {
+    fn grow(&self, items: &mut [Item], first: u32, bounds: Rows, depth: u32) -> Part<BvhNode> {
         let mut scratch = Scratch {
             splitter: Splitter::new(self.unit),
             partitioner: Partitioner::new(),
@@ -96,7 +86,7 @@ impl Builder {
         };
         if items.len() <= TASK {
             let (root, depth) = self.subtree(items, first, bounds, depth, &mut scratch);
-            return Part { root, below: Below::Nodes(scratch.nodes), depth };
+            return Part { root, below: Below::Nodes(scratch.nodes, Vec::new()), depth };
         }
         let sides = self.partition(items, depth, &mut scratch);
         let (left, right) = items.split_at_mut(sides.mid);
@@ -104,8 +94,7 @@ impl Builder {
             || self.grow(left, first, sides.left, depth + 1),
             || self.grow(right, first + sides.mid as u32, sides.right, depth + 1),
         );
-        let depth = 1 + a.depth.max(b.depth);
-        Part { root: BvhNode::inner(&bounds, 0), below: Below::Parts(Box::new([a, b])), depth }
+        Part::of(BvhNode::inner(&bounds, 0), [a, b])
     }
 
     /// Builds a subtree on one thread, depth first; returns its root and its depth.
@@ -133,7 +122,7 @@ impl Builder {
     /// True if a node of few triangles costs less, by the surface area heuristic, with two leaves than as one.
     fn is_worth_splitting(&self, items: &[Item], bounds: &Rows, depth: u32, scratch: &mut Scratch) -> bool {
         let CostModel { traversal, intersection } = self.config.cost;
-        if !traversal.is_finite() || items.len() < 2 || is_near_the_bottom(items, depth) {
+        if !traversal.is_finite() || items.len() < 2 || is_near_the_bottom(items.len(), depth, self.config.max_depth) {
             return false;
         }
         let Some(split) = scratch.splitter.find(items, &self.binning(items)) else { return false };
@@ -154,7 +143,7 @@ impl Builder {
 
     /// Reorders `items` into two non-empty sides.
     fn partition(&self, items: &mut [Item], depth: u32, scratch: &mut Scratch) -> Sides {
-        if is_near_the_bottom(items, depth) {
+        if is_near_the_bottom(items.len(), depth, self.config.max_depth) {
             return halve(items);
         }
         let binning = self.binning(items);
@@ -165,62 +154,24 @@ impl Builder {
     }
 }
 
-/// True if halving from here on just keeps within the greatest depth: below this depth there are only median splits, so
-/// that [`MAX_DEPTH`] holds.
-fn is_near_the_bottom(items: &[Item], depth: u32) -> bool {
-    let halvings = usize::BITS - items.len().leading_zeros();
-    depth + halvings >= MAX_DEPTH
+/// True if halving `items` from here on just keeps within the greatest depth: below this depth there are only median
+/// splits, so that it holds.
+pub(crate) fn is_near_the_bottom(items: usize, depth: u32, max_depth: u32) -> bool {
+    depth + halvings(items) >= max_depth
 }
 
-impl Part {
-    fn len(&self) -> usize {
-        match &self.below {
-            Below::Nodes(nodes) => nodes.len(),
-            Below::Parts(parts) => 2 + parts[0].len() + parts[1].len(),
-        }
-    }
-
-    /// Lays the parts out one after another behind the root pair and moves their links.
-    fn into_nodes(self) -> Vec<BvhNode> {
-        let mut nodes: Vec<BvhNode> = bytemuck::zeroed_vec(2 + self.len());
-        let (pair, rest) = nodes.split_at_mut(2);
-        pair.copy_from_slice(&[self.place(rest, 2), BvhNode::NONE]);
-        nodes
-    }
-
-    /// Writes everything below this part's root to `out`, which begins at node `base`; returns the root.
-    fn place(self, out: &mut [BvhNode], base: u32) -> BvhNode {
-        match self.below {
-            Below::Nodes(nodes) => {
-                out.iter_mut().zip(&nodes).for_each(|(out, node)| *out = node.moved(base));
-                self.root.moved(base)
-            }
-            Below::Parts(parts) => {
-                let [a, b] = *parts;
-                let (pair, rest) = out.split_at_mut(2);
-                let a_len = a.len();
-                let (a_out, b_out) = rest.split_at_mut(a_len);
-                let (left, right) =
-                    rayon::join(|| a.place(a_out, base + 2), || b.place(b_out, base + 2 + a_len as u32));
-                pair.copy_from_slice(&[left, right]);
-                self.root.moved(base)
-            }
+/// Refuses a greatest depth that does not hold even if every node is halved.
+pub(crate) fn check_depth(items: usize, max_depth: u32) -> Result<()> {
+    match halvings(items) {
+        levels if levels <= max_depth => Ok(()),
+        levels => {
+            let problem = format!("{items} triangles may take {levels} levels, more than {max_depth}");
+            Err(Error::too_large("the tree", problem, "set a greater max_depth"))
         }
     }
 }
 
-impl BvhNode {
-    fn leaf(bounds: &Rows, first: u32, count: u32) -> BvhNode {
-        let Aabb { min, max } = bounds.aabb();
-        BvhNode { min: min.to_array(), first, max: max.to_array(), count }
-    }
-
-    fn inner(bounds: &Rows, first: u32) -> BvhNode {
-        BvhNode::leaf(bounds, first, 0)
-    }
-
-    /// With its link moved by `base`; leaves refer to triangle references, which do not move.
-    fn moved(self, base: u32) -> BvhNode {
-        if self.count == 0 { BvhNode { first: self.first + base, ..self } } else { self }
-    }
+/// Levels that are enough for so many items if every node is halved.
+fn halvings(items: usize) -> u32 {
+    usize::BITS - items.leading_zeros()
 }

@@ -1,7 +1,11 @@
 //! Invariants of a BVH.
+//!
+//! A builder may divide a triangle into several references. The leaf of each holds a part of the triangle's box, which
+//! a builder enlarges so that no hit is lost; what is asked of all of them together is that they cover the triangle.
 
 use crate::math::Aabb;
-use crate::workloads::trace::bvh::{Bvh, BvhNode, MAX_DEPTH, MAX_LEAF};
+use crate::workloads::trace::bvh::cover::is_covered;
+use crate::workloads::trace::bvh::{Bvh, BvhNode, DEPTH_LIMIT, MAX_LEAF};
 use crate::workloads::trace::common::check::{Expected, Verdict, ensure, same};
 
 pub(crate) fn check(bvh: &Bvh, expected: &Expected) -> Verdict {
@@ -19,6 +23,7 @@ pub(crate) fn check(bvh: &Bvh, expected: &Expected) -> Verdict {
         seen: vec![false; count],
         next_ref: 0,
         covered: vec![Covered::NEVER; expected.boxes.len()],
+        parts: Vec::new(),
         depth: 0,
     };
     walk.seen[1] = true;
@@ -45,7 +50,7 @@ pub(crate) fn check(bvh: &Bvh, expected: &Expected) -> Verdict {
             expected.aabb(triangle)
         );
     }
-    Ok(())
+    walk.check_parts()
 }
 
 #[derive(Clone)]
@@ -65,6 +70,8 @@ struct Walk<'a> {
     seen: Vec<bool>,
     next_ref: usize,
     covered: Vec<Covered>,
+    /// Triangle and part of its box of every reference.
+    parts: Vec<(u32, Aabb)>,
     depth: u32,
 }
 
@@ -73,7 +80,7 @@ impl Walk<'_> {
     fn node(&mut self, index: usize, depth: u32) -> Result<Aabb, String> {
         ensure!(!self.seen[index], "node {index} is reached twice");
         self.seen[index] = true;
-        ensure!(depth <= MAX_DEPTH, "node {index} lies deeper than {MAX_DEPTH}");
+        ensure!(depth <= DEPTH_LIMIT, "node {index} lies deeper than {DEPTH_LIMIT}");
         let node = self.bvh.nodes[index];
         let tight = if node.count > 0 { self.leaf(index, &node, depth)? } else { self.inner(index, &node, depth)? };
         ensure!(same(node.aabb(), tight), "node {index} has box {:?}, its content {tight:?}", node.aabb());
@@ -118,8 +125,24 @@ impl Walk<'_> {
             let covered = &mut self.covered[triangle as usize];
             covered.times += 1;
             covered.span = covered.span.union(part);
+            self.parts.push((triangle, part));
             tight = tight.union(part);
         }
         Ok(tight)
+    }
+
+    /// Checks that the leaves of every triangle that is divided hold all of it.
+    fn check_parts(mut self) -> Verdict {
+        self.parts.sort_by_key(|(triangle, _)| *triangle);
+        for parts in self.parts.chunk_by(|(a, _), (b, _)| a == b).filter(|parts| parts.len() > 1) {
+            let triangle = parts[0].0;
+            let corners = self.expected.corners(triangle);
+            ensure!(
+                is_covered(corners, parts.iter().map(|(_, part)| *part)),
+                "the {} leaves of triangle {triangle} do not cover it",
+                parts.len()
+            );
+        }
+        Ok(())
     }
 }

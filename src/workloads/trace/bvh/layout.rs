@@ -1,10 +1,12 @@
 //! Bounding volume hierarchy.
 
+use super::bins::Rows;
 use super::{KIND, check};
 use crate::math::Aabb;
 use crate::scene::Scene;
 use crate::workloads::trace::common::check::{Expected, Verdict};
 use crate::workloads::trace::common::memory::{self, rt2};
+use crate::workloads::trace::common::part::{Base, PartNode};
 use crate::workloads::trace::common::properties::Leaves;
 use crate::workloads::trace::common::sah::CostModel;
 use crate::workloads::trace::{Properties, Structure, StructureKind, TriangleRef};
@@ -30,8 +32,14 @@ pub struct BvhNode {
 /// Most triangle references a leaf may have: traversals pack a leaf into one word, four bits of it are the count.
 pub const MAX_LEAF: u32 = 15;
 
-/// Greatest depth of a tree from any builder. Traversals size their stacks by [`Bvh::depth`].
+/// Most triangle references of a tree: 27 bits of that word are the first of a leaf.
+pub const MAX_REFERENCES: usize = 1 << 27;
+
+/// Greatest depth of a tree unless another one is asked for. Traversals size their stacks by [`Bvh::depth`].
 pub const MAX_DEPTH: u32 = 60;
+
+/// Greatest depth that can be asked for.
+pub const DEPTH_LIMIT: u32 = 440;
 
 impl BvhNode {
     /// An empty leaf: the dummy sibling of the root, and the root of an empty scene. Its box contains nothing.
@@ -55,6 +63,31 @@ impl BvhNode {
     pub fn corners(&self) -> (Vec3A, Vec3A) {
         let rows: &[Vec4; 2] = bytemuck::cast_ref(self);
         (Vec3A::from_vec4(rows[0]), Vec3A::from_vec4(rows[1]))
+    }
+}
+
+impl BvhNode {
+    pub(crate) fn leaf(bounds: &Rows, first: u32, count: u32) -> BvhNode {
+        let Aabb { min, max } = bounds.aabb();
+        BvhNode { min: min.to_array(), first, max: max.to_array(), count }
+    }
+
+    pub(crate) fn inner(bounds: &Rows, first: u32) -> BvhNode {
+        BvhNode::leaf(bounds, first, 0)
+    }
+
+    /// An inner node over two others.
+    pub(crate) fn around(left: &BvhNode, right: &BvhNode, first: u32) -> BvhNode {
+        let Aabb { min, max } = left.aabb().union(right.aabb());
+        BvhNode { min: min.to_array(), first, max: max.to_array(), count: 0 }
+    }
+}
+
+impl PartNode for BvhNode {
+    const NONE: BvhNode = BvhNode::NONE;
+
+    fn moved(self, base: Base) -> BvhNode {
+        BvhNode { first: self.first + if self.count == 0 { base.node } else { base.triangle }, ..self }
     }
 }
 

@@ -3,18 +3,25 @@
 mod bins;
 pub mod build;
 pub(crate) mod check;
+mod clip;
+mod cover;
 mod layout;
+mod lists;
+mod options;
 pub mod packet;
 mod partition;
 pub mod ploc;
 mod ploc_passes;
+pub mod spatial;
+mod spatial_bins;
 pub mod stack;
+pub mod sweep;
+mod widened;
 
-pub use layout::{Bvh, BvhNode, MAX_DEPTH, MAX_LEAF};
+pub use layout::{Bvh, BvhNode, DEPTH_LIMIT, MAX_DEPTH, MAX_LEAF, MAX_REFERENCES};
 
 use super::algorithm::{Builder, Made};
 use super::common::estimate::{CLOSE, Estimate, VERTEX};
-use super::common::sah::CostModel;
 use super::options::{Axis, Kind, OptionInfo};
 use super::selection::Selection;
 use super::structure::StructureKind;
@@ -25,13 +32,13 @@ use std::sync::Arc;
 
 static KIND: StructureKind = StructureKind { name: "BVH", node_texel: Texel::Bytes16, has_cells: false };
 
-/// Binned SAH, top down.
-static BINNED: Builder = Builder {
+/// SAH, top down: binned, over all borders between triangles, or with spatial splits.
+static TOP_DOWN: Builder = Builder {
     name: "bvh",
-    options: OPTIONS,
+    options: options::OPTIONS,
     parallel: true,
     purpose: |_| "",
-    build: build_binned,
+    build: options::build,
     estimate: Some(estimate),
 };
 
@@ -39,31 +46,8 @@ static BINNED: Builder = Builder {
 static PLOC: Builder =
     Builder { name: "ploc", options: PLOC_OPTIONS, parallel: true, purpose: |_| "", build: build_ploc, estimate: None };
 
-const OPTIONS: &[OptionInfo] = &[
-    OptionInfo::new(Axis::Build, "bins", "16", "bins per axis", Kind::Count(2, 32)),
-    OptionInfo::new(Axis::Build, "max_leaf", "4", "split until at most so many triangles", Kind::Count(1, 15)),
-    OptionInfo::new(
-        Axis::Build,
-        "kt",
-        "inf",
-        "cost of a traversal step: with it, nodes within max_leaf are split, too, where that is cheaper; inf: never",
-        Kind::Number(0.0, f64::INFINITY),
-    ),
-    OptionInfo::new(Axis::Build, "ki", "1", "cost of a triangle test", Kind::Number(1e-6, 1e6)).idle_if(no_costs),
-];
-
-fn no_costs(s: &Selection) -> Option<String> {
-    (s.value("kt") == "inf").then(|| "costs are compared only with kt".to_owned())
-}
-
 const PLOC_OPTIONS: &[OptionInfo] =
     &[OptionInfo::new(Axis::Build, "preset", "medium", "obvhs's preset", Kind::Word(&ploc::PRESETS))];
-
-fn build_binned(s: &Selection, scene: &Scene) -> Result<Made> {
-    let cost = CostModel { traversal: s.number("kt"), intersection: s.number("ki") };
-    let config = build::Config { bins: s.size("bins"), max_leaf: s.size("max_leaf"), cost };
-    Ok(Made::of(build::build(scene, &config)?))
-}
 
 fn build_ploc(s: &Selection, scene: &Scene) -> Result<Made> {
     let params = ploc::preset(s.value("preset")).expect("the table lists the presets");

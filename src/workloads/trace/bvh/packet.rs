@@ -5,7 +5,8 @@ use crate::error::Result;
 use crate::math::{Ray, ray_box};
 use crate::workloads::trace::algorithm::{Algorithm, Parameter, Parameters, Traversal};
 use crate::workloads::trace::bvh::stack::{EMPTY, LEAF, leaf_triangle_refs, overlaps};
-use crate::workloads::trace::bvh::{BINNED, Bvh as Tree, BvhNode, KIND};
+use crate::workloads::trace::bvh::widened::{self, Widening};
+use crate::workloads::trace::bvh::{Bvh as Tree, BvhNode, KIND, TOP_DOWN};
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::cpu::TwinInput;
 use crate::workloads::trace::options::{Axis, Kind, OptionInfo, PACKET};
@@ -17,7 +18,7 @@ pub static BVH: Algorithm = Algorithm {
     alias: "bvh-packet",
     summary: "binned SAH BVH, packets of 8x8 rays with one shared stack (also: bvh-packet)",
     paper: "Günther et al. 2007",
-    builder: &BINNED,
+    builder: &TOP_DOWN,
     traversal: |_| &SHARED_STACK,
     options: &[VOTE, PACKET],
 };
@@ -26,7 +27,10 @@ pub static BVH: Algorithm = Algorithm {
 pub static SHARED_STACK: Traversal = Traversal {
     kernel: "trace/bvh/packet.wgsl",
     structure: &KIND,
-    parameters: |s| Parameters::of(&[("ORIGINAL_VOTE", Parameter::Flag(s.value("vote") == "original"))]),
+    parameters: |s| {
+        let original_vote = ("ORIGINAL_VOTE", Parameter::Flag(s.value("vote") == "original"));
+        Parameters::of(&[original_vote, widened::parameter(s)])
+    },
     twin: Some(|input| Ok(input.with(Bvh::of(&input)?))),
     ..Traversal::COOPERATIVE
 };
@@ -45,6 +49,7 @@ pub struct Bvh<'a> {
     triangles: Triangles<'a>,
     pairs: &'a [[BvhNode; 2]],
     original_vote: bool,
+    widening: Widening,
 }
 
 /// What the work-group shares.
@@ -81,7 +86,8 @@ impl<'a> Bvh<'a> {
     fn of(input: &TwinInput<'a>) -> Result<Self> {
         let bvh: &Tree = input.structure()?;
         let original_vote = input.method.parameters.flag("ORIGINAL_VOTE");
-        Ok(Bvh { triangles: input.triangles(), pairs: bvh.nodes.as_chunks().0, original_vote })
+        let widening = Widening::of(input, bvh);
+        Ok(Bvh { triangles: input.triangles(), pairs: bvh.nodes.as_chunks().0, original_vote, widening })
     }
 
     fn start_packet(&self) -> Packet {
@@ -153,6 +159,7 @@ impl Traverse for Bvh<'_> {
         let mut best = [Best::before(limit); GROUP];
         let mut searching = alive; // an occluded ray no longer votes
         let mut packet = self.start_packet();
+        let wide = self.widening.all(rays);
         while packet.next != EMPTY {
             if packet.next & LEAF != 0 {
                 let (first, triangle_refs) = leaf_triangle_refs(packet.next);
@@ -170,7 +177,7 @@ impl Traverse for Bvh<'_> {
                 packet.pop();
                 packet.announce(searching, counters);
             } else {
-                self.visit_inner(rays, &mut packet, &best, searching, counters);
+                self.visit_inner(&wide, &mut packet, &best, searching, counters);
             }
         }
         best.map(|best| best.triangle_ref)

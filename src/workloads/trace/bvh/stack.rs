@@ -1,10 +1,15 @@
 //! BVH, one ray at a time with a private stack, nearer child first. Twin of `kernels/trace/bvh/stack.wgsl`.
+//!
+//! With `cull=off`, boxes are never compared with the nearest hit so far: a ray visits every node that it meets before
+//! its limit, as in a thesis of 2010 (the source `rt2`).
 
 use crate::math::{Ray, ray_box};
-use crate::workloads::trace::algorithm::{Algorithm, Traversal};
-use crate::workloads::trace::bvh::{BINNED, Bvh, BvhNode, KIND, PLOC};
+use crate::workloads::trace::algorithm::{Algorithm, Parameter, Parameters, Traversal};
+use crate::workloads::trace::bvh::widened::{self, Widening};
+use crate::workloads::trace::bvh::{Bvh, BvhNode, KIND, PLOC, TOP_DOWN};
 use crate::workloads::trace::count::Count;
-use crate::workloads::trace::options::GROUP;
+use crate::workloads::trace::options::{Axis, GROUP, Kind, OptionInfo};
+
 use crate::workloads::trace::traverse::{Best, STACK_SIZE, TraverseIndependent, Triangles};
 
 /// A stack per ray in the same BVH as that of packets.
@@ -12,10 +17,10 @@ pub static BVH_STACK: Algorithm = Algorithm {
     name: "bvh-stack",
     alias: "",
     summary: "the same BVH, one ray per thread with a stack of its own",
-    paper: "Aila and Laine 2009",
-    builder: &BINNED,
+    paper: "Wald 2007; Wald, Boulos and Shirley 2007; Stich et al. 2009; Aila and Laine 2009",
+    builder: &TOP_DOWN,
     traversal: |_| &STACK,
-    options: &[GROUP],
+    options: &[CULL, GROUP],
 };
 
 /// A stack per ray in a BVH of a state-of-the-art builder.
@@ -26,16 +31,37 @@ pub static PLOC_STACK: Algorithm = Algorithm {
     paper: "Meister and Bittner 2018",
     builder: &PLOC,
     traversal: |_| &STACK,
-    options: &[GROUP],
+    options: &[CULL, GROUP],
 };
 
 /// Depth first, nearer child first.
 pub static STACK: Traversal = Traversal {
     kernel: "trace/bvh/stack.wgsl",
     structure: &KIND,
-    twin: Some(|input| Ok(input.with(BvhStack::new(input.triangles(), input.structure()?)))),
+    parameters: |s| {
+        let cull = ("CULL", Parameter::Flag(s.value("cull") == "on"));
+        Parameters::of(&[cull, widened::parameter(s)])
+    },
+    twin: Some(|input| {
+        let parameters = input.method.parameters;
+        let bvh = input.structure()?;
+        Ok(input.with(BvhStack::new(input.triangles(), bvh, parameters.flag("CULL"), Widening::of(&input, bvh))))
+    }),
     ..Traversal::INDEPENDENT
 };
+
+const CULL: OptionInfo = OptionInfo::new(
+    Axis::Traversal,
+    "cull",
+    "on",
+    "leave out boxes that begin behind the nearest hit so far: those of children, and those from the stack",
+    Kind::Word(&["on", "off"]),
+);
+
+/// The parameters without options.
+pub fn defaults() -> Parameters {
+    Parameters::of(&[("CULL", Parameter::Flag(true)), widened::flag(false)])
+}
 
 /// What a node leads to, in one word (`kernels/trace/bvh/node.wgsl`): the left child of an inner node, which the right
 /// one follows, or with the top bit set four bits of count and 27 bits of first triangle reference.
@@ -71,12 +97,14 @@ pub struct BvhStack<'a> {
     triangles: Triangles<'a>,
     /// Siblings together.
     pairs: &'a [[BvhNode; 2]],
+    cull: bool,
+    widening: Widening,
 }
 
 impl<'a> BvhStack<'a> {
     /// A traversal of a built BVH.
-    pub fn new(triangles: Triangles<'a>, bvh: &'a Bvh) -> Self {
-        BvhStack { triangles, pairs: bvh.nodes.as_chunks().0 }
+    pub fn new(triangles: Triangles<'a>, bvh: &'a Bvh, cull: bool, widening: Widening) -> Self {
+        BvhStack { triangles, pairs: bvh.nodes.as_chunks().0, cull, widening }
     }
 
     /// The node on top of the stack, if its box begins before `t`; or the next one of which that is true, or EMPTY.
@@ -128,9 +156,11 @@ impl TraverseIndependent for BvhStack<'_> {
         let mut stack = Stack { node: [BOTTOM; STACK_SIZE], t: [-1.0; STACK_SIZE], depth: 1 };
         let root = &self.pairs[0][0];
         let (min, max) = root.corners();
-        let mut reference = if overlaps(ray_box(ray, min, max), limit) { root.reference() } else { EMPTY };
+        let wide = self.widening.widened(ray);
+        let mut reference = if overlaps(ray_box(&wide, min, max), limit) { root.reference() } else { EMPTY };
         loop {
-            reference = self.walk_to_leaf(ray, best.t, reference, &mut stack, count);
+            let reach = if self.cull { best.t } else { limit };
+            reference = self.walk_to_leaf(&wide, reach, reference, &mut stack, count);
             if reference == EMPTY {
                 return best.triangle_ref;
             }
@@ -139,7 +169,8 @@ impl TraverseIndependent for BvhStack<'_> {
             if self.triangles.test::<ANY, C>(ray, first, triangle_refs, &mut best, count) {
                 return best.triangle_ref;
             }
-            reference = self.pop(best.t, &mut stack, count);
+            let reach = if self.cull { best.t } else { limit };
+            reference = self.pop(reach, &mut stack, count);
         }
     }
 }

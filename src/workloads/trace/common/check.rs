@@ -7,6 +7,7 @@ use crate::math::Aabb;
 use crate::scene::Scene;
 use crate::workloads::trace::TriangleRef;
 use crate::workloads::trace::common::prims;
+use glam::DVec3;
 
 /// What a check finds: the first broken invariant, in words.
 pub type Verdict = Result<(), String>;
@@ -53,6 +54,11 @@ impl<'a> Expected<'a> {
 
     pub(crate) fn aabb(&self, triangle: u32) -> Aabb {
         self.boxes[triangle as usize]
+    }
+
+    /// Corners of a triangle.
+    pub(crate) fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        self.scene.corners(triangle).map(|corner| corner.as_dvec3())
     }
 
     fn check_triangle_ref(&self, index: usize, triangle_ref: &TriangleRef) -> Verdict {

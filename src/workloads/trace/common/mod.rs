@@ -3,6 +3,7 @@
 pub(crate) mod check;
 pub mod estimate;
 pub mod memory;
+pub(crate) mod part;
 pub mod prims;
 pub mod properties;
 pub mod sah;

@@ -226,6 +226,8 @@ pub fn methods() -> Vec<Method> {
             option.examples().iter().for_each(|value| add(&format!("{}:{}={value}", algorithm.name, option.key)));
         }
     }
+    // What a traversal does otherwise in trees with clipped boxes
+    ["bvh:build=spatial", "bvh-stack:build=spatial", "bvh-stack:build=spatial,cull=off"].into_iter().for_each(&mut add);
     let of_kernels = |option: &&OptionInfo| option.axis == Axis::Rays || option.key == "reflections";
     for option in COMMON_OPTIONS.iter().filter(of_kernels) {
         option.examples().iter().for_each(|value| add(&format!("bvh-stack:{}={value}", option.key)));
