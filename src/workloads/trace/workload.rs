@@ -152,6 +152,8 @@ paths that have not changed.",
         ("quick", include_str!("../../../presets/sweep/quick.toml")),
         ("thesis", include_str!("../../../presets/sweep/thesis.toml")),
         ("thesis-lite", include_str!("../../../presets/sweep/thesis-lite.toml")),
+        ("rt2", include_str!("../../../presets/sweep/rt2.toml")),
+        ("rt2-lite", include_str!("../../../presets/sweep/rt2-lite.toml")),
     ],
 };
 

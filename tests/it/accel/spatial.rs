@@ -161,3 +161,16 @@ fn inside_a_room_it_takes_at_most_three_quarters_of_the_steps() {
     let share = steps(&spatial) / steps(&sweep);
     assert!(share <= 0.75, "{share}");
 }
+
+/// The paper's property: both sides of the plane are apart until whole references are put on one side.
+#[test]
+fn sides_of_a_spatial_split_have_no_volume_in_common() {
+    let scene = scene::load("room:triangles=20000").unwrap();
+    let properties = |selection: &str| build(selection, &scene, 2).properties(&scene);
+    let spatial = properties("bvh:build=spatial,max_leaf=3");
+    assert!(spatial.spatial_splits.unwrap() > 100, "{:?}", spatial.spatial_splits);
+    assert_eq!(spatial.spatial_overlap, Some(0.0));
+    // None is tried where alpha is beyond the whole surface
+    assert_eq!(properties("bvh:build=spatial,max_leaf=3,alpha=2").spatial_splits, Some(0));
+    assert_eq!(properties("bvh:build=sweep,max_leaf=3").spatial_splits, None);
+}

@@ -211,7 +211,7 @@ fn the_memory_model_gives_the_published_sizes() {
         let tree = KdTree { bounds, nodes, triangle_refs: triangle_refs(published.kd_references), depth: 0 };
         assert!((size(&tree) - published.kd_mib).abs() < 0.08);
         let nodes = vec![BvhNode::NONE; published.bvh_nodes as usize];
-        let bvh = Bvh { bounds, nodes, triangle_refs: Vec::new(), depth: 0 };
+        let bvh = Bvh { bounds, nodes, triangle_refs: Vec::new(), depth: 0, spatial: None };
         assert!((size(&bvh) - published.bvh_mib).abs() < 0.011);
     }
 }

@@ -44,7 +44,7 @@ pub fn build(scene: &Scene, config: &Config) -> Result<Bvh> {
     };
     let (mut items, bounds) = prims::gather(scene, Item::NONE, item, |item| &item.prim)?;
     if items.is_empty() {
-        return Ok(Bvh { bounds, nodes: vec![BvhNode::NONE; 2], triangle_refs: Vec::new(), depth: 0 });
+        return Ok(Bvh { bounds, nodes: vec![BvhNode::NONE; 2], triangle_refs: Vec::new(), depth: 0, spatial: None });
     }
     check_depth(items.len(), config.max_depth)?;
     let builder = Builder { config: *config, unit: unit(&bounds) };
@@ -60,7 +60,7 @@ pub fn build(scene: &Scene, config: &Config) -> Result<Bvh> {
             triangle_refs
         },
     );
-    Ok(Bvh { bounds, nodes, triangle_refs, depth })
+    Ok(Bvh { bounds, nodes, triangle_refs, depth, spatial: None })
 }
 
 struct Builder {

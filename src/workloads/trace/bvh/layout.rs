@@ -104,6 +104,18 @@ pub struct Bvh {
     pub triangle_refs: Vec<TriangleRef>,
     /// Levels of inner nodes on the longest way from the root to a leaf: what a stack must hold.
     pub depth: u32,
+    /// Of a builder with spatial splits.
+    pub spatial: Option<SpatialSplits>,
+}
+
+/// Spatial splits of a BVH.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SpatialSplits {
+    /// Inner nodes that are split so.
+    pub count: u32,
+    /// The largest share of such a node's volume that lies in both children, before whole references are put on one
+    /// side: 0 to 1.
+    pub overlap: f32,
 }
 
 impl Structure for Bvh {
@@ -145,7 +157,11 @@ impl Structure for Bvh {
 
     fn properties(&self, scene: &Scene) -> Properties {
         let leaves = Leaves::of(self.nodes.iter().map(|n| n.count).filter(|&count| count > 0));
-        let common = Properties::of_references(&self.triangle_refs, scene);
+        let common = Properties {
+            spatial_splits: self.spatial.map(|splits| splits.count),
+            spatial_overlap: self.spatial.map(|splits| f64::from(splits.overlap)),
+            ..Properties::of_references(&self.triangle_refs, scene)
+        };
         leaves.into_properties(self.nodes.len(), self.depth, CostModel::default().bvh(self), common)
     }
 

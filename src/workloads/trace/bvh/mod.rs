@@ -18,7 +18,7 @@ pub mod stack;
 pub mod sweep;
 mod widened;
 
-pub use layout::{Bvh, BvhNode, DEPTH_LIMIT, MAX_DEPTH, MAX_LEAF, MAX_REFERENCES};
+pub use layout::{Bvh, BvhNode, DEPTH_LIMIT, MAX_DEPTH, MAX_LEAF, MAX_REFERENCES, SpatialSplits};
 
 use super::algorithm::{Builder, Made};
 use super::common::estimate::{CLOSE, Estimate, VERTEX};

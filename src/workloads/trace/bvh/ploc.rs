@@ -62,7 +62,13 @@ fn is_endless(prims: &[Prim], bounds: &Aabb) -> bool {
 pub fn build(scene: &Scene, params: BvhBuildParams) -> Result<Option<Bvh>> {
     let (prims, bounds) = prims::prims(scene)?;
     if prims.is_empty() {
-        return Ok(Some(Bvh { bounds, nodes: vec![BvhNode::NONE; 2], triangle_refs: Vec::new(), depth: 0 }));
+        return Ok(Some(Bvh {
+            bounds,
+            nodes: vec![BvhNode::NONE; 2],
+            triangle_refs: Vec::new(),
+            depth: 0,
+            spatial: None,
+        }));
     }
     if is_endless(&prims, &bounds) {
         return Ok(None);
@@ -90,7 +96,7 @@ pub fn build(scene: &Scene, params: BvhBuildParams) -> Result<Option<Bvh>> {
     };
     copy.heights = copy.heights();
     copy.nodes[0] = copy.node(0, 0);
-    Ok(Some(Bvh { bounds, nodes: copy.nodes, triangle_refs: copy.triangle_refs, depth: copy.depth }))
+    Ok(Some(Bvh { bounds, nodes: copy.nodes, triangle_refs: copy.triangle_refs, depth: copy.depth, spatial: None }))
 }
 
 /// A power of two that brings the largest coordinate near 1.

@@ -6,11 +6,14 @@
 //! cheaper. Ours are: the margin of clipped boxes ([`Clipper`]), the bound on references ([`Sides::spare`]), and that
 //! small nodes are not divided ([`FEW_LEAVES`]).
 
+use crate::workloads::trace::bvh::SpatialSplits;
 use crate::workloads::trace::bvh::bins::Rows;
 use crate::workloads::trace::bvh::clip::Clipper;
 use crate::workloads::trace::bvh::lists::merged;
 use crate::workloads::trace::bvh::spatial_bins::{BinGrid, Plane};
 use crate::workloads::trace::common::prims::Prim;
+use glam::{DVec3, Vec4};
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// What can be set about spatial splits.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,6 +61,31 @@ pub(crate) struct Spatial<'a> {
     pub root: f32,
     /// Nodes of at most so many references are split between references only.
     pub few: usize,
+    pub tally: Tally,
+}
+
+/// What is known of the splits made so far, by all threads.
+#[derive(Default)]
+pub(crate) struct Tally {
+    count: AtomicU32,
+    /// Bits of an f32: those of numbers that are not negative have their order.
+    overlap: AtomicU32,
+}
+
+impl Tally {
+    /// Adds a split whose sides are these boxes before whole references are put on one side.
+    fn add(&self, left: &Rows, right: &Rows) {
+        let volume = |min: Vec4, max: Vec4| (max - min).truncate().as_dvec3().max(DVec3::ZERO).element_product();
+        let common = volume(left.min.max(right.min), left.max.min(right.max));
+        let whole = volume(left.min.min(right.min), left.max.max(right.max));
+        let share = if common > 0.0 { (common / whole) as f32 } else { 0.0 };
+        self.count.fetch_add(1, Relaxed);
+        self.overlap.fetch_max(share.to_bits(), Relaxed);
+    }
+
+    pub fn splits(&self) -> SpatialSplits {
+        SpatialSplits { count: self.count.load(Relaxed), overlap: f32::from_bits(self.overlap.load(Relaxed)) }
+    }
 }
 
 impl Spatial<'_> {
@@ -111,8 +139,13 @@ impl Spatial<'_> {
         }
         let mut divided = 0;
         let mut parts_of: [Vec<Prim>; 2] = Default::default();
+        let mut parted = sides.map(|side| side.bounds);
         for reference in across {
-            let parts = self.place(reference, plane, &sides, divided < spare);
+            let parts = self.clipper.cut(reference, axis, at);
+            for (bounds, part) in parted.iter_mut().zip(&parts) {
+                part.iter().for_each(|part| bounds.grow(part.min, part.max));
+            }
+            let parts = self.place(reference, parts, &sides, divided < spare);
             divided += usize::from(parts.iter().all(Option::is_some));
             for ((side, list), part) in sides.iter_mut().zip(&mut parts_of).zip(parts) {
                 part.iter().for_each(|part| side.add(part));
@@ -122,6 +155,7 @@ impl Spatial<'_> {
         if sides.iter().any(|side| side.count == 0) {
             return None;
         }
+        self.tally.add(&parted[0], &parted[1]);
         let side = |side: usize| {
             [0, 1, 2].map(|axis| {
                 let goes = |r: &&Prim| if side == 0 { is_left(r) } else { is_right(r) };
@@ -133,10 +167,15 @@ impl Spatial<'_> {
         Some(Sides { lists: [left, right], bounds: sides.map(|side| side.bounds), spare: spare - divided })
     }
 
-    /// Where a reference across the plane goes: both of its parts to their sides, or the whole to one of them, whatever
-    /// is cheapest with what is there already; the whole where it may not be divided.
-    fn place(&self, reference: &Prim, plane: Plane, sides: &[Side; 2], may_divide: bool) -> [Option<Prim>; 2] {
-        let parts = self.clipper.cut(reference, plane.axis, plane.at);
+    /// Where a reference across a plane goes: both of its parts to their sides, or the whole to one of them, whatever is
+    /// cheapest with what is there already; the whole where it may not be divided.
+    fn place(
+        &self,
+        reference: &Prim,
+        parts: [Option<Prim>; 2],
+        sides: &[Side; 2],
+        may_divide: bool,
+    ) -> [Option<Prim>; 2] {
         let [Some(low), Some(high)] = parts else { return parts };
         let [left, right] = sides;
         let cost = |left: Side, right: Side| left.cost(self.unit) + right.cost(self.unit);

@@ -11,7 +11,7 @@ use crate::workloads::trace::bvh::bins::Rows;
 use crate::workloads::trace::bvh::build::{check_depth, is_near_the_bottom};
 use crate::workloads::trace::bvh::clip::Clipper;
 use crate::workloads::trace::bvh::lists::{Border, Pivot, around, cheapest, sort, sorted};
-use crate::workloads::trace::bvh::spatial::{FEW_LEAVES, MOST_REFERENCES, Sides, Spatial, SpatialConfig};
+use crate::workloads::trace::bvh::spatial::{FEW_LEAVES, MOST_REFERENCES, Sides, Spatial, SpatialConfig, Tally};
 use crate::workloads::trace::bvh::{Bvh, BvhNode, MAX_DEPTH, MAX_REFERENCES};
 use crate::workloads::trace::common::part::{Below, Part};
 use crate::workloads::trace::common::prims::{self, CHUNK, Prim, SHARED};
@@ -66,14 +66,14 @@ const USEFUL: f32 = 1.0 - 1.0e-6;
 pub fn build(scene: &Scene, config: &Config) -> Result<Bvh> {
     let (prims, bounds) = prims::prims(scene)?;
     if prims.is_empty() {
-        return Ok(Bvh { bounds, nodes: vec![BvhNode::NONE; 2], triangle_refs: Vec::new(), depth: 0 });
+        return Ok(Bvh { bounds, nodes: vec![BvhNode::NONE; 2], triangle_refs: Vec::new(), depth: 0, spatial: None });
     }
     check_depth(prims.len(), config.max_depth)?;
     let rows = Rows { min: bounds.min.extend(0.0), max: bounds.max.extend(0.0) };
     let unit = unit(&bounds);
     let spatial = config.spatial.map(|spatial| {
         let (clipper, root) = (Clipper::new(scene, &bounds), rows.half_area(unit));
-        Spatial { config: spatial, clipper, unit, root, few: FEW_LEAVES * config.max_leaf }
+        Spatial { config: spatial, clipper, unit, root, few: FEW_LEAVES * config.max_leaf, tally: Tally::default() }
     });
     let most = (MOST_REFERENCES * prims.len()).min(MAX_REFERENCES).max(prims.len());
     let root = Node { bounds: rows, depth: 0, spare: if spatial.is_some() { most - prims.len() } else { 0 } };
@@ -87,11 +87,12 @@ pub fn build(scene: &Scene, config: &Config) -> Result<Bvh> {
         }
         Sorting::EveryNode => builder.grow([prims], root),
     };
+    let spatial = builder.spatial.map(|spatial| spatial.tally.splits());
     let depth = part.depth;
     let (nodes, triangles) = part.into_nodes();
     let triangle_ref = |&triangle: &u32| prims::triangle_ref(scene, triangle);
     let triangle_refs = triangles.par_iter().with_min_len(CHUNK).map(triangle_ref).collect();
-    Ok(Bvh { bounds, nodes, triangle_refs, depth })
+    Ok(Bvh { bounds, nodes, triangle_refs, depth, spatial })
 }
 
 struct Builder<'a> {
