@@ -305,7 +305,8 @@ fn what_cannot_be_judged_is_one_error_and_nothing_is_overwritten() {
     let gated = Gated::new();
     let good = std::fs::read_to_string(&gated.baseline).unwrap();
     let line = |needle: &str| good.lines().position(|line| line.contains(needle)).unwrap() + 1;
-    let cut = good[..good.len() / 2].to_owned();
+    // Behind the end of a line the parser would be on the next one
+    let cut = good[..good.len() / 2].trim_end().to_owned();
     let broken: [(String, String); 7] = [
         (good.replace("rtbench-baseline/1", "rtbench-baseline/9"), ":2: schema \"rtbench-baseline/9\"".into()),
         (good.replacen("\"tests\": ", "\"tests\": -", 1), format!(":{}: no baseline", line("\"tests\": "))),
