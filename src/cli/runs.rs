@@ -15,7 +15,7 @@ pub struct RunArguments {
     /// Folders of recorded runs, as `rtbench sweep` writes them; none: the published numbers
     #[arg(value_name = "RUN")]
     runs: Vec<PathBuf>,
-    /// Source of tables, figures and claims: thesis [default: every source that the runs fit]
+    /// Source of tables, figures and claims: thesis, rt2 [default: every source that the runs fit]
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     source: Vec<String>,
 }
@@ -23,8 +23,8 @@ pub struct RunArguments {
 /// What tables show.
 #[derive(Args, Debug)]
 pub struct OptionArguments {
-    /// Side of the square image in tables of one size [default: the largest of the source's sizes at which nearly every
-    /// scene was measured; the thesis's are 1024, 768, 512, 256]
+    /// Side of the square image (rt2: width of the image) in tables of one size [default: the largest of the source's
+    /// sizes at which nearly every scene was measured; the thesis's are 1024, 768, 512, 256, that of rt2 is 1408x768]
     #[arg(long, value_name = "PIXELS")]
     resolution: Option<u32>,
     /// What a step of a tree is, in tables of counts

@@ -19,7 +19,8 @@ use std::path::PathBuf;
 pub struct Arguments {
     #[command(flatten)]
     runs: RunArguments,
-    /// Tables by their numbers, or all; the thesis has 5.1 to 5.14, 5.3.4 (speed-ups between devices) and B.1 to B.6
+    /// Tables by their numbers, or all; the thesis has 5.1 to 5.14, 5.3.4 (speed-ups between devices) and B.1 to B.6,
+    /// rt2 has 4.4 to 4.6
     #[arg(long, default_value = "all", value_name = "LIST")]
     table: String,
     /// Format of the tables
@@ -45,7 +46,7 @@ pub struct Arguments {
 const EXAMPLES: &str = "\
 Examples:
   rtbench tables
-      everything that the thesis printed
+      everything that the sources printed
   rtbench tables results/RUN --published --table 5.4,5.5,5.6
       the structures of a run, each number with the published one
   rtbench tables results/A results/B --table 5.2,5.3.4,B.1 --format markdown

@@ -9,6 +9,8 @@ pub enum Form {
     Whole,
     /// A number with so many decimals.
     Fixed(usize),
+    /// A gain in percent, without decimals: the quotient of two gains says nothing and is not written.
+    Gain,
     /// A time: two decimals, but at least three significant digits and none beyond the point from 10,000 on.
     Time,
 }
@@ -17,7 +19,7 @@ impl Form {
     /// Writes a number.
     pub fn write(self, value: f64) -> String {
         match self {
-            Form::Whole => format!("{value:.0}"),
+            Form::Whole | Form::Gain => format!("{value:.0}"),
             Form::Fixed(places) => format!("{value:.places$}"),
             Form::Time if value.abs() >= 10_000.0 => format!("{value:.0}"),
             Form::Time if value.abs() >= 1.0 || value == 0.0 => format!("{value:.2}"),

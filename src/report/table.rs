@@ -63,6 +63,13 @@ pub struct Row {
 pub enum Cell {
     /// Words.
     Text(String),
+    /// Words and the published ones that they are compared with; both may be missing.
+    Words {
+        /// The words of what was measured, or published ones where [`Table::is_published`] says so.
+        value: Option<String>,
+        /// The published words for comparison.
+        published: Option<String>,
+    },
     /// A number and the published one that it is compared with; both may be missing.
     Number {
         /// The measured number, or a published one where [`Table::is_published`] says so.
@@ -121,12 +128,17 @@ impl Cell {
 
     /// True if the cell has words or a number of the table's own.
     pub fn is_filled(&self) -> bool {
-        matches!(self, Cell::Text(_) | Cell::Number { value: Some(_), .. })
+        matches!(self, Cell::Text(_) | Cell::Words { value: Some(_), .. } | Cell::Number { value: Some(_), .. })
     }
 
-    /// True if the cell has a published number for comparison.
+    /// True if the cell has a published number, or published words, for comparison.
     pub fn has_published(&self) -> bool {
-        matches!(self, Cell::Number { published: Some(_), .. })
+        matches!(self, Cell::Words { published: Some(_), .. } | Cell::Number { published: Some(_), .. })
+    }
+
+    /// True for words, also where there are none.
+    pub fn is_words(&self) -> bool {
+        matches!(self, Cell::Text(_) | Cell::Words { .. })
     }
 
     /// Measured by published, where both are known and the quotient is finite.
@@ -144,9 +156,12 @@ impl Cell {
         match (self, line) {
             (Cell::Text(text), Line::Value) => Some(text.clone()),
             (Cell::Text(_), _) => None,
+            (Cell::Words { value, .. }, Line::Value) => value.clone(),
+            (Cell::Words { published, .. }, Line::Published) => published.clone(),
+            (Cell::Words { .. }, Line::Ratio) => None,
             (Cell::Number { value, .. }, Line::Value) => value.map(|v| v.write(form)),
             (Cell::Number { published, .. }, Line::Published) => published.map(|v| v.write(form)),
-            (Cell::Number { .. }, Line::Ratio) => self.ratio().map(ratio),
+            (Cell::Number { .. }, Line::Ratio) => self.ratio().filter(|_| form != Form::Gain).map(ratio),
         }
     }
 }
@@ -193,7 +208,7 @@ impl Table {
 
     /// True if a column has words in any row.
     pub(crate) fn has_words(&self, column: usize) -> bool {
-        self.rows.iter().any(|row| matches!(row.cells.get(column), Some(Cell::Text(_))))
+        self.rows.iter().any(|row| row.cells.get(column).is_some_and(Cell::is_words))
     }
 
     /// Every line as text, with `dash` where there is nothing. A row is named on its first line only, and a first key

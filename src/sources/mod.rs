@@ -6,6 +6,8 @@
 pub mod claims;
 pub mod convention;
 pub mod report;
+pub mod rows;
+pub mod rt2;
 pub mod runs;
 pub mod thesis;
 
@@ -17,7 +19,7 @@ use claims::Finding;
 use convention::Convention;
 
 /// All sources.
-pub const ALL: [&Source; 1] = [&thesis::SOURCE];
+pub const ALL: [&Source; 2] = [&thesis::SOURCE, &rt2::SOURCE];
 
 /// A source.
 pub struct Source {

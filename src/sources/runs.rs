@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::guard;
 use crate::record::journal::FILE_NAME;
+use crate::record::row::Status;
 use crate::workloads::trace::record::{self, TraceJournal};
 use std::path::{Path, PathBuf};
 
@@ -46,4 +47,30 @@ impl RecordedRun {
     pub fn read_all(paths: &[PathBuf]) -> Result<Vec<RecordedRun>> {
         paths.iter().map(|path| RecordedRun::read(path)).collect()
     }
+
+    /// What a reader should know about how the run ended.
+    pub fn notes(&self) -> Vec<String> {
+        let journal = &self.journal;
+        let mut notes = Vec::new();
+        let name = format!("the run of {} on {}", journal.provenance.started, journal.provenance.device_names());
+        match &journal.end {
+            None => notes.push(format!("{name} was killed before its end: what it had measured is used")),
+            Some(end) if !end.complete => notes.push(format!("{name} ended early: what it had measured is used")),
+            Some(_) => {}
+        }
+        if let Some(truncated) = &journal.truncated {
+            notes.push(format!(
+                "{name}: {}",
+                truncated.split(" of ").next().unwrap_or(truncated).to_owned() + " is cut off"
+            ));
+        }
+        notes
+    }
+}
+
+/// The number of rows whose passes were interleaved with those of other rows, and of all rows with times.
+pub fn interleaved_rows(runs: &[RecordedRun]) -> (usize, usize) {
+    let rows = runs.iter().flat_map(|run| &run.journal.configurations);
+    let turns: Vec<usize> = rows.filter(|r| r.status == Status::Ok && r.verified).map(|r| r.interleaved_with).collect();
+    (turns.iter().filter(|number| **number > 1).count(), turns.len())
 }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 const WIDTH: usize = 120;
 
 /// Files and folders that are checked.
-const CHECKED: [&str; 21] = [
+const CHECKED: [&str; 22] = [
     "ARCHITECTURE.md",
     "CHANGELOG.md",
     "CONTRIBUTING.md",
@@ -25,6 +25,7 @@ const CHECKED: [&str; 21] = [
     "kernels",
     "presets",
     "results/README.md",
+    "results/rt2-2010",
     "results/thesis-2009",
     "scenes/README.md",
     "scenes/catalog.toml",

@@ -52,6 +52,34 @@ fn published_numbers_are_in_their_own_column() {
 }
 
 #[test]
+fn words_and_gains_are_compared_without_a_ratio() {
+    let words = Cell::Words { value: Some("a, b".into()), published: Some("b, a".into()) };
+    let gain = Cell::Number { value: Some(30.0.into()), published: Some(15.0.into()) };
+    let none = Cell::Words { value: None, published: Some("b, a".into()) };
+    assert!(words.is_filled() && words.has_published() && !none.is_filled() && none.has_published());
+    let table = Table {
+        columns: vec![Column::new("order", "", Form::Whole), Column::new("gain", "%", Form::Gain)],
+        rows: vec![
+            Row { keys: vec!["hall".into()], cells: vec![words, gain] },
+            Row { keys: vec!["scan".into()], cells: vec![none, Cell::number(None)] },
+        ],
+        ..table()
+    };
+    let csv = format::write(std::slice::from_ref(&table), Format::Csv);
+    for line in ["hall,,order,,\"a, b\",\"b, a\",", "hall,,gain,%,30,15,", "scan,,order,,,\"b, a\",", "scan,,gain,%,,,"]
+    {
+        assert!(csv.lines().any(|l| l.ends_with(line)), "{line}: {csv}");
+    }
+    let text = format::write(std::slice::from_ref(&table), Format::Markdown);
+    for line in
+        ["| hall | run | a, b | 30 |", "|  | 1999 | b, a | 15 |", "| scan | run | – | – |", "|  | 1999 | b, a | – |"]
+    {
+        assert!(text.lines().any(|l| l == line), "{line}: {text}");
+    }
+    assert!(html::table(&table).contains("<td class=\"words\">a, b</td>"));
+}
+
+#[test]
 fn text_is_broken_at_spaces() {
     let text = wrap::wrap(&"word ".repeat(60), "  ");
     assert!(text.lines().all(|line| line.starts_with("  word") && line.len() <= 100), "{text}");

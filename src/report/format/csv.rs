@@ -1,5 +1,6 @@
 //! Tables for other programs: one line per number, all tables under the same header.
 
+use crate::report::Form;
 use crate::report::table::{Cell, Table};
 
 /// The names of the columns.
@@ -21,13 +22,16 @@ pub fn write(tables: &[Table]) -> String {
             for (cell, column) in row.cells.iter().zip(&table.columns) {
                 let (own, other) = match cell {
                     Cell::Text(text) => (text.clone(), String::new()),
+                    Cell::Words { value, published } => {
+                        (value.clone().unwrap_or_default(), published.clone().unwrap_or_default())
+                    }
                     Cell::Number { value, published } => {
                         (number(value.map(|n| n.value)), number(published.map(|n| n.value)))
                     }
                 };
                 let (value, published) = if table.is_published { (String::new(), own) } else { (own, other) };
                 let name = [column.group.as_str(), column.name.as_str()].join(" ");
-                let (source, ratio) = (table.origin.source, number(cell.ratio()));
+                let (source, ratio) = (table.origin.source, number(cell.ratio().filter(|_| column.form != Form::Gain)));
                 let (id, title, unit) = (&table.id, &table.title, &column.unit);
                 line([source, id, title, first, &rest, name.trim(), unit, &value, &published, &ratio]);
             }

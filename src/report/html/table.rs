@@ -1,7 +1,7 @@
 //! Tables on a page.
 
 use super::escape;
-use crate::report::table::{Cell, Column, Line, Table};
+use crate::report::table::{Column, Line, Table};
 
 /// Writes a table with its title above and its notes below.
 pub fn write(table: &Table) -> String {
@@ -23,7 +23,7 @@ pub fn write(table: &Table) -> String {
             let words = index.checked_sub(table.key_columns()).and_then(|i| row.cells.get(i));
             let class = match words {
                 None => " class=\"key\"",
-                Some(Cell::Text(_)) => " class=\"words\"",
+                Some(cell) if cell.is_words() => " class=\"words\"",
                 Some(_) => "",
             };
             html += &format!("<td{class}>{}</td>", escape(cell));

@@ -12,6 +12,7 @@ pub use html::write as html;
 pub use text::{Form, summary, write};
 
 use crate::compare::judge::{Outcome, Verdict};
+use crate::sources::rows::Device;
 use serde::Serialize;
 
 /// What a verdict rests on.
@@ -22,6 +23,8 @@ pub enum Basis {
     BuildTimes,
     /// Sizes in memory.
     Sizes,
+    /// What structures are like: leaves, references, expected costs.
+    Properties,
     /// Frame times.
     FrameTimes,
     /// Steps and triangle tests per ray: where frame times of a device say nothing about a GPU.
@@ -34,6 +37,7 @@ impl Basis {
         match self {
             Basis::BuildTimes => "build times",
             Basis::Sizes => "sizes",
+            Basis::Properties => "properties of structures",
             Basis::FrameTimes => "frame times",
             Basis::Counts => "counts",
         }
@@ -155,6 +159,39 @@ impl Finding {
             needs: statement.needs,
             warnings: Vec::new(),
         }
+    }
+}
+
+/// What a claim is judged by on a device, and what to beware of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grounds {
+    /// Frame times, or counts in their place.
+    pub basis: Basis,
+    /// True for frame times of a device that computes on the CPU.
+    pub without_gpu: bool,
+    /// Warnings for the finding.
+    pub warnings: Vec<String>,
+}
+
+impl Grounds {
+    /// The grounds of a claim whose own basis is `basis`, on a device if one is involved. Where that device's times say
+    /// nothing about a GPU, counts decide; `counts` names them, and is none where they cannot. `remark` is a warning of
+    /// the claim itself; it may be empty.
+    pub fn of(basis: Basis, device: Option<&Device>, counts: Option<&str>, remark: &str) -> Grounds {
+        let software = basis == Basis::FrameTimes && device.is_some_and(Device::is_software);
+        let (basis, warning) = match counts.filter(|_| software) {
+            Some(counts) => {
+                let warning = format!("Judged by {counts} per ray: this device's times say nothing about a GPU's.");
+                (Basis::Counts, Some(warning))
+            }
+            None if software => {
+                (basis, Some("About this machine only: the device computes on the CPU and is no GPU.".to_owned()))
+            }
+            None => (basis, None),
+        };
+        let remark = Some(remark.to_owned()).filter(|remark| !remark.is_empty());
+        let warnings = warning.into_iter().chain(remark).collect();
+        Grounds { basis, without_gpu: software && basis == Basis::FrameTimes, warnings }
     }
 }
 

@@ -1,57 +1,15 @@
-//! Builders of structures: build times of unlike processors or numbers of threads are neither compared nor put into one
-//! column.
+//! Built structures of the thesis's scenes: by any builder, or by one.
 
 use super::data::{Built, Data};
 use super::scenes::SceneKey;
 use super::structures::STRUCTURES;
 use super::variant::Variant;
-use crate::report::Number;
-
-/// Processor and number of threads: only build times that have both in common can be compared.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct BuiltBy<'a> {
-    /// The processor; empty if unknown.
-    pub processor: &'a str,
-    /// The number of threads.
-    pub threads: usize,
-}
-
-impl BuiltBy<'_> {
-    /// `2 threads of an Example CPU`, without the article.
-    pub fn in_words(&self) -> String {
-        let processor = if self.processor.is_empty() { "an unknown processor" } else { self.processor };
-        format!("{} of {processor}", threads_in_words(self.threads))
-    }
-}
-
-/// `one thread`, `2 threads`.
-pub fn threads_in_words(number: usize) -> String {
-    if number == 1 { "one thread".into() } else { format!("{number} threads") }
-}
-
-impl Built {
-    /// The builder.
-    pub fn by(&self) -> BuiltBy<'_> {
-        BuiltBy { processor: &self.processor, threads: self.threads.unwrap_or(1) }
-    }
-
-    /// The build time, with its printed decimals.
-    pub fn time(&self) -> Option<Number> {
-        self.build_ms.map(|value| Number { value, places: self.places })
-    }
-}
+use crate::sources::rows::{self, BuiltBy};
 
 impl Data {
     /// All builders, the fewest threads first because the thesis built on one; then in the order of the runs.
     pub fn builders(&self) -> Vec<BuiltBy<'_>> {
-        let mut builders: Vec<BuiltBy> = Vec::new();
-        for by in self.built.iter().map(Built::by) {
-            if !builders.contains(&by) {
-                builders.push(by);
-            }
-        }
-        builders.sort_by_key(|by| by.threads);
-        builders
+        rows::builders(self.built.iter())
     }
 
     /// A structure each time that it was built, the last one last; a camera path makes no difference to it.

@@ -6,12 +6,12 @@
 use super::indexed::Indexed;
 use super::scenes::{SceneKey, ThesisScene};
 use super::variant::Variant;
-use crate::compare::pair::Conditions;
-use crate::report::Number;
 use crate::sources::convention::Steps;
-use crate::workloads::trace::Properties;
-use crate::workloads::trace::backend::{Config, DeviceType};
+use crate::sources::rows;
+use crate::workloads::trace::backend::Config;
 use std::cmp::Reverse;
+
+pub use crate::sources::rows::Device;
 
 /// All numbers of the thesis, or of runs.
 #[derive(Clone, Debug, Default)]
@@ -36,26 +36,6 @@ pub struct Data {
     pub notes: Vec<String>,
 }
 
-/// A device that was measured.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Device {
-    /// The name in titles and columns; unique.
-    pub label: String,
-    /// The kind; `None` for the thesis's devices.
-    pub kind: Option<DeviceType>,
-    /// Driver, processor, system and the like, by heading; empty where unknown.
-    pub facts: Vec<(&'static str, String)>,
-    /// True if kernels had wgpu's checks in at least one of the rows that are used.
-    pub checked: bool,
-}
-
-impl Device {
-    /// True if its times say nothing about a GPU: the CPU twins and software rasterisers.
-    pub fn is_software(&self) -> bool {
-        matches!(self.kind, Some(DeviceType::CpuTwin | DeviceType::SoftwareRasteriser))
-    }
-}
-
 /// A scene with its properties.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
@@ -68,28 +48,14 @@ pub struct Scene {
     pub mirror_share: Option<f64>,
 }
 
-/// Frame times of one configuration, in milliseconds.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Frame {
-    /// Index into [`Data::devices`].
-    pub device: usize,
-    pub scene: SceneKey,
-    pub structure: String,
-    pub variant: Variant,
-    pub config: Config,
-    pub width: u32,
-    pub height: u32,
-    pub conditions: Conditions,
-    pub min_ms: f64,
-    pub max_ms: f64,
-    pub mean_ms: f64,
-    /// Decimals of the three times, if they were printed.
-    pub places: Option<[usize; 3]>,
-    /// Spread over passes in percent; `None` after a single pass.
-    pub noise_pct: Option<f64>,
-    /// True if this measurement replaced an earlier one of the same.
-    pub repeated: bool,
-}
+/// Frame times of one configuration.
+pub type Frame = rows::Frame<SceneKey>;
+
+/// A built structure.
+pub type Built = rows::Built<SceneKey>;
+
+/// A configuration without a number.
+pub type Failure = rows::Failure<SceneKey>;
 
 /// Averages per ray of one type. A device that rounds in another way counts other numbers, so they belong to one.
 #[derive(Clone, Debug, PartialEq)]
@@ -111,46 +77,6 @@ pub struct Counts {
     pub restarts: Option<f64>,
 }
 
-/// A built structure.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Built {
-    pub scene: SceneKey,
-    pub structure: String,
-    pub variant: Variant,
-    /// The thesis has some of them.
-    pub properties: Properties,
-    pub build_ms: Option<f64>,
-    /// Decimals of the build time, if it was printed.
-    pub places: Option<usize>,
-    pub threads: Option<usize>,
-    /// The number of builds: the time is their median.
-    pub builds: usize,
-    /// Processor that built it.
-    pub processor: String,
-    /// MiB by the thesis's accounting, geometry included.
-    pub thesis_mib: Option<f64>,
-    /// MiB as allocated, geometry included.
-    pub allocated_mib: Option<f64>,
-    /// True if this one replaced an earlier one.
-    pub repeated: bool,
-}
-
-/// A configuration without a number.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Failure {
-    pub scene: SceneKey,
-    /// Index into [`Data::devices`].
-    pub device: usize,
-    /// Scene, structure with its options, rays and size, in words.
-    pub what: String,
-    pub structure: String,
-    pub variant: Variant,
-    pub config: Config,
-    pub width: u32,
-    pub height: u32,
-    pub message: String,
-}
-
 /// A row of table 5.7 or 5.8.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RegisterLimit {
@@ -169,14 +95,6 @@ pub struct RegisterLimit {
 /// The configuration whose column shows a ray type: the one that adds it, as in tables 5.9 to 5.11.
 pub fn config_adding(ray: usize) -> Config {
     Config::ALL[ray.min(2)]
-}
-
-impl Frame {
-    /// The fastest, the slowest and the mean frame, with their printed decimals.
-    pub fn times(&self) -> [Number; 3] {
-        let of = |index: usize, value| Number { value, places: self.places.map(|places| places[index]) };
-        [of(0, self.min_ms), of(1, self.max_ms), of(2, self.mean_ms)]
-    }
 }
 
 impl Counts {

@@ -3,7 +3,6 @@
 
 mod builds;
 pub mod claims;
-mod conditions;
 pub mod data;
 pub mod figures;
 mod indexed;

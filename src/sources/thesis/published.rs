@@ -236,7 +236,7 @@ fn built() -> Vec<Built> {
                 builds: 1,
                 processor: "Athlon64 X2, 2 GHz".into(),
                 thesis_mib: Some(row.size_mib),
-                allocated_mib: None,
+                memory: None,
                 repeated: false,
             });
         }

@@ -1,11 +1,10 @@
 //! The thesis's words in the HTML report: the lead, and what differs from 2009.
 
-use super::builds::threads_in_words;
 use super::data::{Data, Device};
-use super::measured;
 use super::structures::title;
 use crate::report::html::escape;
-use crate::sources::runs::RecordedRun;
+use crate::sources::rows::threads_in_words;
+use crate::sources::runs::{RecordedRun, interleaved_rows};
 use crate::sources::{Rows, Section};
 
 /// What the page is about, and what to beware of.
@@ -111,7 +110,7 @@ pub fn differences(data: &Data, runs: &[RecordedRun]) -> Section {
 
 /// How frames were timed, and whether passes of several structures were interleaved: older versions did not.
 fn times(runs: &[RecordedRun]) -> String {
-    let order = match measured::interleaved_rows(runs) {
+    let order = match interleaved_rows(runs) {
         (_, 0) => String::new(),
         (0, _) => " Each row was timed on its own.".into(),
         (some, all) if some == all => " Passes of several structures were interleaved.".into(),

@@ -1,8 +1,8 @@
 //! The nine scenes of the thesis, and which of them a recorded scene is, if any.
 
-use crate::camera;
 use crate::names;
 use crate::scene::{Options, catalogue};
+use crate::sources::rows::is_own_path;
 use std::fmt;
 
 /// A scene of the thesis, in the order of its tables.
@@ -122,7 +122,9 @@ impl SceneKey {
 
     /// The same along a camera path, by the path's name and whether there are shadow rays.
     pub fn along(self, name: &str, triangles: u64, path: &str, shadows: bool) -> SceneKey {
-        if is_own_path(name, &self, path, shadows) {
+        // The files of BART have cameras
+        let file_has_camera = self.base_scene().map(|scene| matches!(scene, Robots | Museum | Kitchen));
+        if is_own_path(name, path, shadows, file_has_camera) {
             return self;
         }
         SceneKey::Along(Box::new(self), path.to_owned(), triangles)
@@ -195,26 +197,6 @@ fn is_as_catalogued(name: &str, scene: ThesisScene) -> Result<(), String> {
         _ if settings.is_empty() => Err(format!(" without {catalogued}")),
         _ => Err(String::new()),
     }
-}
-
-/// Is a path the one that its scene is measured along if the user names none (`CameraPath::for_scene`)? The camera of a
-/// scene's file has the scene's name, and some scenes have a path that was made for them; scenes with neither are
-/// circled. A row without a path's name is taken to be along the scene's own.
-fn is_own_path(name: &str, key: &SceneKey, path: &str, shadows: bool) -> bool {
-    let bare = name.split(':').next().unwrap_or(name);
-    if path.is_empty() || path == bare {
-        return true;
-    }
-    let stem = names::stem(bare);
-    if let Some(own) = catalogue::find(stem).and_then(|entry| entry.camera_path.as_deref()) {
-        return path == own;
-    }
-    // The files of BART have cameras
-    let has_own = match key.base_scene() {
-        Some(scene) => matches!(scene, Robots | Museum | Kitchen),
-        None => camera::names().contains(&stem),
-    };
-    !has_own && path == if shadows { "light-orbit" } else { "orbit" }
 }
 
 impl fmt::Display for SceneKey {

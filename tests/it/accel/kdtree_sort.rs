@@ -1,10 +1,14 @@
 //! The kd-tree's builders by sorting and by min-max bins: exactness, numbers of leaves, the same bytes whichever way.
 
 use super::{build, build_as, bytes, scenes};
-use rtbench::math::Aabb;
+use crate::traversal::{assert_same, trace};
+use glam::Vec3;
+use rtbench::math::{Aabb, MISS};
 use rtbench::scene::{self, Scene};
+use rtbench::workloads::trace::backend::GivenRay;
 use rtbench::workloads::trace::common::sah::half_area;
 use rtbench::workloads::trace::kdtree::{KdNode, KdTree};
+use rtbench::workloads::trace::{CpuBackend, Selection};
 
 /// Boxes of a scene's triangles.
 fn boxes(scene: &Scene) -> Vec<Aabb> {
@@ -87,7 +91,48 @@ fn a_sorted_tree_is_the_same_whichever_way_it_is_sorted() {
             assert!(bytes(&build(selection, &scene, threads)) == once, "{}: {selection}, {threads}", scene.name);
         }
         assert!(bytes(&build("kdtree", &scene, 1)) != once, "{}: no difference would be seen", scene.name);
-        build("kdtree:build=sort", &scene, 2).validate(&scene).unwrap();
+        build("kdtree:build=sort,search=ropes", &scene, 2).validate(&scene).unwrap();
+    }
+}
+
+/// Clusters of triangles, each half as far again from the origin as the one before and as large.
+fn clusters() -> Scene {
+    let mut next = scenes::numbers(1);
+    let scales = std::iter::successors(Some(1e-8_f32), |scale| Some(scale * 1.5)).take_while(|&scale| scale < 1e11);
+    let triangles = scales.flat_map(|scale| [scale; 30]).map(|scale| {
+        let mut point = |size: f32| Vec3::new(next(), next(), next()) * size * scale;
+        let at = point(0.1) + scale;
+        [at, at + point(0.01), at + point(0.01)]
+    });
+    scenes::soup("clusters", triangles.collect::<Vec<_>>())
+}
+
+/// Traversals have room for 60 levels. Where a tree would be deeper, its note says so.
+#[test]
+fn a_tree_as_deep_as_traversals_go_says_so() {
+    let scene = clusters();
+    for build in ["build=sort", "build=sort,sorting=every-node", "build=min-max"] {
+        let deep = Selection::parse(&format!("kdtree:{build},thin=0")).unwrap().build(&scene, 2).unwrap();
+        assert_eq!(deep.structure.properties(&scene).depth, Some(60));
+        assert!(deep.note.starts_with("max_depth=60: "), "{build}: '{}'", deep.note);
+        deep.structure.validate(&scene).unwrap();
+        let thicker = Selection::parse(&format!("kdtree:{build}")).unwrap().build(&scene, 2).unwrap();
+        assert!(thicker.structure.properties(&scene).depth.unwrap() < 60 && thicker.note.is_empty());
+    }
+    // All of them find their way down
+    let rays: Vec<GivenRay> = (0..2_000)
+        .map(|i| {
+            let triangle = &scene.triangles[i * 7 % scene.triangles.len()];
+            let target = scene.vertices[triangle.vertices[i % 3] as usize].position;
+            GivenRay { origin: Vec3::ZERO, direction: target.normalize() }
+        })
+        .collect();
+    let cpu = CpuBackend::new(2).unwrap();
+    let truth = trace(&cpu, &scene, "brute", &rays, false);
+    assert!(truth.iter().filter(|hit| hit.triangle != MISS).count() > 100);
+    for search in ["stack", "ropes", "restart", "short-stack"] {
+        let selection = format!("kdtree:build=sort,thin=0,search={search}");
+        assert_same(cpu.info(), &selection, &rays, &truth, &trace(&cpu, &scene, &selection, &rays, false));
     }
 }
 
@@ -121,6 +166,7 @@ fn leaves_of_real_models() {
         let scene = scene::load_in(name, Some(std::path::Path::new(&folder))).unwrap();
         let found = leaves("kdtree:build=sort", &scene);
         assert!((found / expected - 1.0).abs() <= 1e-3, "{name}: {found} leaves instead of {expected}");
+        build("kdtree:build=sort,search=ropes", &scene, 2).validate(&scene).unwrap();
         if name == "bunny" {
             assert_min_max(&scene);
         }

@@ -35,10 +35,10 @@ fn names_select_sources_and_devices() {
     assert_eq!(named(&[]).unwrap(), ALL.map(|source| source.name));
     assert_eq!(named(&["thesis", "thesis"]).unwrap(), ["thesis"]);
     let error = named(&["2009"]).unwrap_err();
-    assert_eq!((error.exit_code(), error.to_string().contains("one of thesis")), (2, true), "{error}");
-    assert_eq!(select_device(&ALL, "8600gt").unwrap(), [Some(1)]);
+    assert_eq!((error.exit_code(), error.to_string().contains("one of thesis, rt2")), (2, true), "{error}");
+    assert_eq!(select_device(&ALL, "8600gt").unwrap(), [Some(1), None]);
     assert!(select_device(&ALL, "RTX").unwrap_err().to_string().contains("GTX280, 8600GT"));
-    assert_eq!(select_tables(&ALL, "5.4").unwrap(), [["5.4"]]);
+    assert_eq!(select_tables(&ALL, "5.4,4.6").unwrap(), [["5.4"], ["4.6"]]);
 }
 
 /// What the thesis's source says of a structure by its name holds for structures that there are; others need no entry.

@@ -12,5 +12,5 @@ mod latex; // what a longtable has to have
 mod published; // every row parses; the memory model against all 27 sizes
 mod report; // one page, nothing from outside, everything escaped
 mod runs; // which scene, device, variant and conditions a record belongs to
-mod synthetic; // runs with known content
+mod synthetic; // runs of its scenes and structures
 mod tables; // every table, published and measured, in every format

@@ -3,7 +3,7 @@
 use super::{Case, case, frame_time};
 use crate::compare::judge::{Outcome, Uncertain, all, less};
 use crate::report::{Form, Number};
-use crate::sources::thesis::builds::BuiltBy;
+use crate::sources::rows::BuiltBy;
 use crate::sources::thesis::data::{Built, Data, Frame};
 use crate::sources::thesis::scenes::SceneKey;
 use crate::sources::thesis::structures::{GRID, STRUCTURES};

@@ -14,7 +14,7 @@ use super::data::{Data, Failure, Frame};
 use super::scenes::SceneKey;
 use super::{DOCUMENT, SOURCE};
 use crate::compare::judge::{Outcome, UNKNOWN_NOISE_PCT, Uncertain};
-use crate::sources::claims::{Basis, Case, Finding, Statement};
+use crate::sources::claims::{Basis, Case, Finding, Grounds, Statement};
 use list::{CLAIMS, Claim};
 
 /// A case of a scene.
@@ -41,25 +41,14 @@ pub fn judge(data: &Data, published: &Data, published_device: usize) -> Vec<Find
 }
 
 fn finding(claim: &Claim, data: &Data, device: usize, printed: &[Case]) -> Finding {
-    let mut warnings = Vec::new();
     let by_time = claim.basis == Basis::FrameTimes;
-    let software = by_time && data.devices[device].is_software();
-    let (basis, cases) = match claim.by_counts.filter(|_| software) {
-        Some(by_counts) => {
-            warnings.push(
-                "Judged by steps and triangle tests per ray: this device's times say nothing about a GPU's.".to_owned(),
-            );
-            (Basis::Counts, by_counts(data, device))
-        }
-        None => (claim.basis, (claim.cases)(data, device)),
+    let of = by_time.then(|| &data.devices[device]);
+    let counts = claim.by_counts.map(|_| "steps and triangle tests");
+    let Grounds { basis, without_gpu, warnings } = Grounds::of(claim.basis, of, counts, claim.remark);
+    let cases = match claim.by_counts.filter(|_| basis == Basis::Counts) {
+        Some(by_counts) => by_counts(data, device),
+        None => (claim.cases)(data, device),
     };
-    let without_gpu = software && basis == Basis::FrameTimes;
-    if without_gpu {
-        warnings.push("About this machine only: the device computes on the CPU and is no GPU.".to_owned());
-    }
-    if !claim.remark.is_empty() {
-        warnings.push(claim.remark.to_owned());
-    }
     let statement = Statement {
         source: SOURCE.name,
         document: DOCUMENT,
@@ -69,7 +58,7 @@ fn finding(claim: &Claim, data: &Data, device: usize, printed: &[Case]) -> Findi
     };
     let found = Finding::of(statement, basis, cases, printed);
     Finding {
-        device: if by_time { data.devices[device].label.clone() } else { String::new() },
+        device: of.map_or_else(String::new, |device| device.label.clone()),
         without_gpu,
         published: found.published.filter(|_| !data.published),
         failed: if by_time { failed(claim, data, device) } else { Vec::new() },

@@ -3,7 +3,7 @@
 use super::context::{Context, repeated};
 use crate::report::{Cell, Column, Form, Row, Table};
 use crate::scene::catalogue;
-use crate::sources::thesis::builds::BuiltBy;
+use crate::sources::rows::BuiltBy;
 use crate::sources::thesis::data::{Built, Data};
 use crate::sources::thesis::scenes::SceneKey;
 use crate::sources::thesis::structures::{BVH, GRID, KDTREE, STRUCTURES, title};
@@ -181,7 +181,7 @@ fn properties(context: &Context, id: &str, structure: &str, title: &str, columns
             let column = |of: &fn(&Built) -> Option<f64>| context.cell(|data| of(data.thesis_built(&key, structure)?));
             let mut cells: Vec<Cell> = columns.iter().map(|(.., of)| column(of)).collect();
             if !context.data.published {
-                let allocated = context.data.thesis_built(&key, structure).and_then(|b| b.allocated_mib);
+                let allocated = context.data.thesis_built(&key, structure).and_then(Built::allocated_mib);
                 cells.push(Cell::number(allocated));
             }
             (key.clone(), Row { keys: vec![key.to_string()], cells })

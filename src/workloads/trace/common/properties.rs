@@ -30,6 +30,11 @@ pub struct Properties {
     pub depth: Option<u32>,
     /// Trees: expected cost of a ray by the default cost model ([`super::sah::CostModel`]).
     pub sah_cost: Option<f64>,
+    /// BVHs with spatial splits: inner nodes that are such splits.
+    pub spatial_splits: Option<u32>,
+    /// BVHs with spatial splits: the largest share of a node's volume that the boxes of both children have in common,
+    /// over all such splits, before references are un-split and boxes are padded.
+    pub spatial_overlap: Option<f64>,
 }
 
 impl Properties {

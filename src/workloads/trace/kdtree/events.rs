@@ -161,7 +161,7 @@ fn starts_before(events: &[Event], own: usize) -> u32 {
     counts.sum()
 }
 
-/// The sweep of part of a list: `right` triangles are on the right of its first event, and so many more are on the
+/// The sweep of part of a list: `right` triangles are on the right of its first event, `left_minus_right` more on the
 /// left.
 ///
 /// Of several events in one plane, all but the last end and the first start see too many triangles on one side, and so
@@ -283,10 +283,10 @@ mod tests {
         let cell = Aabb { min: Vec3::ZERO, max: Vec3::new(3.0, 1.0, 2.0) };
         let (areas, _) = Areas::new(&cell, 0.5, 0.0).unwrap();
         for count in [PART as u32 / 2, PART as u32, 5 * PART as u32 / 2 + 7] {
-            // Many at one end, so that the best plane is in no part's middle, and others far away
+            // Most in a slice at one end: the best plane lies behind them, in a later part
             let place = |i: u32| (i.wrapping_mul(0x9e37_79b9) >> 8) as f32 / (1 << 24) as f32;
             let prims = (0..count).map(|i| {
-                let x = if i % 5 == 0 { 2.9 * place(i) } else { 2.0 + 0.1 * place(i) };
+                let x = if i % 5 == 0 { 2.9 * place(i) } else { 0.1 * place(i) };
                 Prim { min: Vec3::splat(x).extend(1.0), max: Vec3::splat(x + 0.01).extend(1.0) }
             });
             let prims: Vec<Prim> = prims.collect();

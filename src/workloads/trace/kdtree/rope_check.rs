@@ -161,8 +161,10 @@ impl Face {
             }
             state = (state ^ state >> 15).wrapping_mul(0x2c1b_3c6d);
             let share = f64::from(state >> 8) / f64::from(1 << 24);
-            let (min, max) = (f64::from(self.cell.min[axis]), f64::from(self.cell.max[axis]));
-            (min + (max - min) * share) as f32
+            let (min, max) = (self.cell.min[axis], self.cell.max[axis]);
+            let point = (f64::from(min) + (f64::from(max) - f64::from(min)) * share) as f32;
+            // What lies in the upper border is the next cell's
+            if point < max { point } else { min }
         })
     }
 }

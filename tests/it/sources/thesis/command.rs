@@ -1,9 +1,8 @@
 //! The program: broken and empty runs, files, documents.
 
 use super::synthetic::everything;
-use rtbench::record::journal::Record;
-use rtbench::record::journal::{FILE_NAME, JournalWriter};
-use rtbench::sources::runs::RecordedRun;
+use crate::sources::synthetic::write_run;
+use rtbench::record::journal::FILE_NAME;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -31,14 +30,6 @@ fn one_line(arguments: &[&str], code: i32, words: &[&str]) {
     assert_eq!(output.status.code(), Some(code), "{arguments:?}: {text}");
     assert_eq!(text.lines().filter(|l| l.starts_with("rtbench: error: ")).count(), 1, "{text}");
     assert!(output.stdout.is_empty() && words.iter().all(|w| text.contains(w)) && !text.contains("panicked"), "{text}");
-}
-
-/// A run's folder as a sweep leaves it.
-fn write_run(run: &RecordedRun, folder: &Path) {
-    let journal = &run.journal;
-    let mut writer = JournalWriter::create(folder, journal.provenance.clone()).unwrap();
-    journal.records().iter().for_each(|record| writer.write(record).unwrap());
-    writer.write(&Record::End(journal.end.clone().unwrap())).unwrap();
 }
 
 /// Both synthetic runs on disk.

@@ -1,19 +1,11 @@
-//! Runs with known content, built record by record.
+//! Runs of the thesis's scenes and structures.
 
-use crate::fakes;
 use rtbench::device::DeviceType;
-use rtbench::record::row::{Samples, Status, TimingSource};
-use rtbench::record::run::End;
 use rtbench::sources::runs::RecordedRun;
 use rtbench::workloads::trace::rays::Config;
-use rtbench::workloads::trace::record::{ConfigurationRecord, CounterSums, SceneRecord, StructureRecord, TraceJournal};
+use rtbench::workloads::trace::record::{ConfigurationRecord, SceneRecord, StructureRecord};
 
-/// A run on a discrete GPU, to be filled.
-pub struct Builder {
-    pub run: RecordedRun,
-    /// Noise of frame times in percent.
-    pub noise: f64,
-}
+pub use crate::sources::synthetic::{Builder, sums};
 
 pub fn scene(name: &str) -> SceneRecord {
     let (name, triangles, vertices, mirror_share) = match name {
@@ -28,30 +20,7 @@ pub fn scene(name: &str) -> SceneRecord {
 }
 
 impl Builder {
-    pub fn new() -> Builder {
-        let mut provenance = fakes::provenance();
-        provenance.devices[0].info.name = "Fast GPU".into();
-        provenance.devices[0].info.device_type = DeviceType::DiscreteGpu;
-        let end = End {
-            ended: "later".into(),
-            interrupted: false,
-            complete: true,
-            load_average: [0.0; 3],
-            message: "".into(),
-        };
-        let (structures, configurations) = (Vec::new(), Vec::new());
-        let journal =
-            TraceJournal { provenance, structures, configurations, resumed: vec![], end: Some(end), truncated: None };
-        Builder { run: RecordedRun { journal, folder: "nowhere".into() }, noise: 0.0 }
-    }
-
-    pub fn device(mut self, name: &str, kind: DeviceType) -> Builder {
-        self.run.journal.provenance.devices[0].info.name = name.into();
-        self.run.journal.provenance.devices[0].info.device_type = kind;
-        self
-    }
-
-    /// A measurement whose mean frame takes `ms`, the fastest 10 % less, the slowest 10 % more.
+    /// A measurement of a square image.
     pub fn frame(
         &mut self,
         name: &str,
@@ -60,26 +29,7 @@ impl Builder {
         side: u32,
         ms: f64,
     ) -> &mut ConfigurationRecord {
-        let (structure, variant) = structure.split_once(':').unwrap_or((structure, "default"));
-        let ns = |factor: f64| [0.9, 1.1].map(|f| (1e6 * ms * f * factor) as u64).to_vec();
-        let noise = self.noise / 100.0;
-        let passes = vec![ns(1.0 - noise), ns(1.0), ns(1.0 + noise)];
-        self.run.journal.configurations.push(ConfigurationRecord {
-            scene: scene(name),
-            structure: structure.into(),
-            variant: variant.into(),
-            width: side,
-            height: side,
-            frames: 2,
-            passes: 3,
-            status: Status::Ok,
-            verified: true,
-            counters: Some([sums(10, 10), sums(20, 10), sums(30, 10)]),
-            timing_source: Some(TimingSource::Wall),
-            samples: Some(Samples { pass_ns: vec![1; 3], wall_ns: passes, ..Samples::default() }),
-            ..ConfigurationRecord::new(config)
-        });
-        self.run.journal.configurations.last_mut().unwrap()
+        self.row(scene(name), structure, config, (side, side), ms)
     }
 
     /// Grid, kd-tree and BVH at once.
@@ -92,33 +42,20 @@ impl Builder {
 
     /// A built structure: build time, size in MiB, and for grids the cells on every side.
     pub fn built(&mut self, name: &str, structure: &str, ms: f64, mib: f64, cells: u32) -> &mut StructureRecord {
-        let (structure, variant) = structure.split_once(':').unwrap_or((structure, "default"));
-        let mut record = StructureRecord {
-            scene: scene(name),
-            structure: structure.into(),
-            variant: variant.into(),
-            build_ms: ms,
-            build_threads: 1,
-            ..StructureRecord::default()
-        };
+        let record = self.structure(scene(name), structure, ms);
         record.memory.thesis_bytes = (mib * f64::from(1 << 20)) as u64;
         record.memory.structure_bytes = record.memory.thesis_bytes;
+        let is_grid = record.structure == "grid";
         let p = &mut record.properties;
-        match structure {
-            "grid" => (p.cells_x, p.cells_y, p.cells_z) = (Some(cells), Some(2 * cells), Some(3 * cells)),
-            _ => (p.leaves, p.nodes) = (Some(7), Some(13)),
+        if is_grid {
+            (p.cells_x, p.cells_y, p.cells_z) = (Some(cells), Some(2 * cells), Some(3 * cells));
+        } else {
+            (p.leaves, p.nodes) = (Some(7), Some(13));
         }
         p.references_per_triangle = Some(9.0);
-        p.max_cell_triangles = (structure == "grid").then_some(1000);
-        self.run.journal.structures.push(record);
-        self.run.journal.structures.last_mut().unwrap()
+        p.max_cell_triangles = is_grid.then_some(1000);
+        record
     }
-}
-
-/// A hundred rays with so many steps and tests each.
-pub fn sums(steps: u64, tests: u64) -> CounterSums {
-    let (inner, leaves) = (60 * steps, 40 * steps);
-    CounterSums { rays: 100, inner, leaves, tests: 100 * tests, pops: 500, restarts: 25, ..CounterSums::default() }
 }
 
 /// A bit of everything that tables, figures and claims can show.

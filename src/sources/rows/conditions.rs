@@ -1,13 +1,17 @@
 //! Frames that may fill the same rows, because they were measured under the same conditions ([`crate::compare::pair`]).
 
-use super::data::{Data, Frame};
-use super::scenes::SceneKey;
+use super::{Device, Frame};
 use crate::compare::pair::{Comparable, choose};
 use crate::workloads::trace::backend::Config;
 use std::collections::HashMap;
+use std::fmt::Display;
+use std::hash::Hash;
 
 /// The frames that fill the rows, and a note on the others.
-pub fn choose_frames<T>(rows: Vec<(Frame, T)>, device: impl Fn(usize) -> String) -> (Vec<(Frame, T)>, Vec<String>) {
+pub fn choose_frames<S: Clone + Eq + Hash + Display, T>(
+    rows: Vec<(Frame<S>, T)>,
+    devices: &[Device],
+) -> (Vec<(Frame<S>, T)>, Vec<String>) {
     let comparable = rows.iter().map(|(frame, _)| Comparable {
         group: (frame.device, frame.scene.clone(), frame.config, frame.width, frame.height),
         conditions: &frame.conditions,
@@ -15,7 +19,7 @@ pub fn choose_frames<T>(rows: Vec<(Frame, T)>, device: impl Fn(usize) -> String)
         variant: &frame.variant,
     });
     let comparable: Vec<_> = comparable.collect();
-    let mut left_out: Vec<(usize, SceneKey, String, usize)> = Vec::new();
+    let mut left_out: Vec<(usize, S, String, usize)> = Vec::new();
     let chosen = choose(&comparable);
     for ((frame, _), kept) in rows.iter().zip(&chosen) {
         let Some(kept) = kept else { continue };
@@ -27,12 +31,12 @@ pub fn choose_frames<T>(rows: Vec<(Frame, T)>, device: impl Fn(usize) -> String)
         }
     }
     let keep: Vec<bool> = chosen.iter().map(Option::is_none).collect();
-    let note = |(index, scene, words, number): &(usize, SceneKey, String, usize)| {
+    let note = |(index, scene, words, number): &(usize, S, String, usize)| {
         format!(
             "{} of {scene} on {} left out, because measurements of other frames are in the same rows: {words}; the \
              ones with most structures are kept, of equals the later ones",
             if *number == 1 { "1 measurement".to_owned() } else { format!("{number} measurements") },
-            device(*index),
+            devices[*index].label,
         )
     };
     let notes = left_out.iter().map(note).collect();
@@ -48,17 +52,17 @@ struct Difference {
 
 /// Notes on devices that measured the same scene, configuration and size under unlike conditions: their times do not
 /// compare.
-pub fn unlike_devices(data: &Data) -> Vec<String> {
-    if data.devices.len() < 2 {
+pub fn unlike_devices<S: Clone + Eq + Hash + Display>(devices: &[Device], frames: &[Frame<S>]) -> Vec<String> {
+    if devices.len() < 2 {
         return Vec::new();
     }
-    let place = |f: &Frame| (f.scene.clone(), f.structure.clone(), f.config, f.width, f.height);
-    let mut places: HashMap<_, Vec<&Frame>> = HashMap::new();
-    for frame in data.frames.iter() {
+    let place = |f: &Frame<S>| (f.scene.clone(), f.structure.clone(), f.config, f.width, f.height);
+    let mut places: HashMap<_, Vec<&Frame<S>>> = HashMap::new();
+    for frame in frames.iter() {
         places.entry(place(frame)).or_default().push(frame);
     }
     let mut found: Vec<Difference> = Vec::new();
-    for frame in data.frames.iter() {
+    for frame in frames.iter() {
         let others = places.get(&place(frame)).into_iter().flatten().filter(|f| f.device < frame.device);
         for other in others.filter(|f| f.conditions != frame.conditions) {
             let here = frame.conditions.difference_from(&other.conditions);
@@ -72,7 +76,7 @@ pub fn unlike_devices(data: &Data) -> Vec<String> {
             }
         }
     }
-    let label = |device: usize| data.devices[device].label.as_str();
+    let label = |device: usize| devices[device].label.as_str();
     let note = |p: &Difference| {
         let (a, b) = (label(p.devices.0), label(p.devices.1));
         let rows: Vec<String> = p.rows.iter().map(|(config, side)| format!("{config:?} {side}")).collect();
