@@ -53,13 +53,12 @@ fn estimates_are_within_their_stated_factors() {
                 continue;
             }
         };
-        let selections = [format!("grid{options}"), "kdtree".to_owned(), "bvh".to_owned()];
-        let selections = selections.map(|text| Selection::parse(&text).unwrap());
+        let grid = format!("grid{options}");
+        let selections = [&grid, "kdtree", "bvh", "bvh:build=sweep,max_leaf=3", "bvh:build=spatial,max_leaf=3"];
+        let selections = selections.map(|text| Selection::parse(text).unwrap());
         let estimates = estimate::estimates(&scene, &selections).unwrap();
         let mut thesis = Vec::new();
-        for estimate in estimates {
-            let options = if estimate.structure == "grid" { options } else { "" };
-            let selection = Selection::parse(&format!("{}{options}", estimate.structure)).unwrap();
+        for (selection, estimate) in selections.iter().zip(estimates) {
             let built = selection.build(&scene, 0).unwrap().structure;
             let close = 1.0 / estimate.factor..estimate.factor;
             for (estimated, real) in [
@@ -67,7 +66,7 @@ fn estimates_are_within_their_stated_factors() {
                 (estimate.thesis_bytes, built.thesis_bytes(&scene)),
             ] {
                 let off = estimated as f64 / real as f64;
-                assert!(close.contains(&off), "{name}, {}: {estimated} estimated, {real} built", estimate.structure);
+                assert!(close.contains(&off), "{name}, {}: {estimated} estimated, {real} built", selection.full_name());
             }
             thesis.push(estimate.thesis_bytes);
         }

@@ -1,10 +1,11 @@
 //! Spatial splits: a node is divided by a plane, and triangles across it become two references with a smaller box each.
+//! A reference is here a triangle and the box of a part of it; in a leaf it becomes a triangle reference.
 //!
 //! M. Stich, H. Friedrich, A. Dietrich: Spatial Splits in Bounding Volume Hierarchies, 2009. A spatial split is tried
 //! where the sides of the best object split overlap by at least `alpha` of the root's surface; bins are filled by
 //! clipping triangles at every border; a reference across the chosen plane goes to one side as a whole where that is
-//! cheaper. Ours are: the margin of clipped boxes ([`Clipper`]), the bound on references ([`Sides::spare`]), and that
-//! small nodes are not divided ([`FEW_LEAVES`]).
+//! cheaper. Ours are: the margin of clipped boxes (`clip.rs`), the bound on references (`Sides::spare`), and that small
+//! nodes are not divided (`FEW_LEAVES`).
 
 use crate::workloads::trace::bvh::SpatialSplits;
 use crate::workloads::trace::bvh::bins::Rows;
@@ -20,7 +21,7 @@ use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 pub struct SpatialConfig {
     /// The overlap at which a spatial split is tried, as a share of the root's surface.
     pub alpha: f32,
-    /// Bins per axis, 2 to [`super::spatial_bins::MAX_SPATIAL_BINS`].
+    /// Bins per axis, 2 to 128.
     pub bins: usize,
     /// Levels of inner nodes that may be split so, the root's the first.
     pub depth: u32,
