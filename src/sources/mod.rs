@@ -159,7 +159,11 @@ pub fn select_device(sources: &[&'static Source], name: &str) -> Result<Vec<Opti
     let of = |source: &&'static Source| source.devices.iter().position(|device| device.eq_ignore_ascii_case(name));
     let found: Vec<Option<usize>> = sources.iter().map(of).collect();
     if found.iter().all(Option::is_none) {
-        let hint = format!("one of {}", list(sources.iter().flat_map(|source| source.devices).copied()));
+        let devices = list(sources.iter().flat_map(|source| source.devices).copied());
+        let hint = match devices.as_str() {
+            "" => format!("{} published times of no device", list(sources.iter().map(|source| source.name))),
+            devices => format!("one of {devices}"),
+        };
         let problem = format!("no published numbers are of a device '{name}'");
         return Err(Error::argument("--device", problem, hint));
     }

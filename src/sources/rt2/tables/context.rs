@@ -157,6 +157,7 @@ impl Context<'_> {
         if !absent.is_empty() {
             notes.push(format!("{verb}: {}.", absent.join(", ")));
         }
+        let has_published = rows.iter().any(|(_, row)| row.cells.iter().any(Cell::has_published));
         let gaps = rows.iter().any(|(_, row)| row.is_filled() && !row.cells.iter().all(Cell::is_filled));
         if gaps {
             notes.push(format!("A dash: {}.", verb.to_lowercase()));
@@ -169,7 +170,7 @@ impl Context<'_> {
             columns,
             rows: rows.into_iter().map(|(_, row)| row).collect(),
             notes,
-            with_published: self.options.published && self.data.is_some(),
+            with_published: has_published,
             is_published: self.data.is_none(),
         }
     }

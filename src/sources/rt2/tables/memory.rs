@@ -39,7 +39,7 @@ fn mib(bytes: u64) -> f64 {
 
 fn sizes(context: &Context, places: &[Place], memory: impl Fn(&SceneKey, Trees) -> Option<Memory>) -> Table {
     type Size = (&'static str, fn(&Memory) -> u64);
-    let sizes: [Size; 2] = [("model", |memory| memory.rt2_bytes), ("allocated", |memory| memory.structure_bytes)];
+    let sizes: [Size; 2] = [("model", |memory| memory.rt2_bytes), ("actual", |memory| memory.structure_bytes)];
     let mut columns = Vec::new();
     for (group, _) in sizes {
         columns.extend(THREE.iter().map(|(name, _)| Column::of(group, name, "MiB", Form::Fixed(2))));
@@ -67,7 +67,7 @@ fn sizes(context: &Context, places: &[Place], memory: impl Fn(&SceneKey, Trees) 
     if context.data.is_some() {
         table.notes.push(
             "Model: 8 bytes for a kd-tree node, 4 for a reference, 48 for the box and the six links of a leaf with \
-             ropes, 48 for a BVH node. Geometry is in neither size."
+             ropes, 48 for a BVH node. Actual: as allocated here. Geometry is in neither size."
                 .into(),
         );
     }

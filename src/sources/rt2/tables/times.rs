@@ -73,7 +73,7 @@ fn rates(
     title: &str,
     rate: impl Fn(&SceneKey, &Structure) -> Option<f64>,
 ) -> Table {
-    let (alike, culled) = ("like for like", "culled");
+    let (alike, culled) = ("as printed", "culled");
     let mut columns: Vec<Column> = ALIKE.iter().map(|s| Column::of(alike, s.title, "1/s", Form::Time)).collect();
     columns.push(Column::of(alike, "fastest first", "", Form::Whole));
     columns.push(Column::of(culled, "BVH", "1/s", Form::Time));

@@ -17,7 +17,7 @@ pub fn scene(name: &str) -> SceneRecord {
     let (name, triangles) = match name {
         "alien" => ("scan:triangles=31600", 32_168),
         "even" => ("scan:triangles=104000", 107_516),
-        "spiky" => ("scan:triangles=104000,spikes=24", 108_000),
+        "spiky" => ("scan:triangles=104000,spikes=1000", 108_000),
         "large" => ("scan:triangles=837000", 847_216),
         "dragon" => ("dragon", 871_414),
         "bunny" => ("bunny", 69_451),

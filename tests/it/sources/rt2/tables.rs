@@ -96,9 +96,10 @@ fn measured_numbers_have_their_order_and_percentages() {
     assert!(row(&saved, &of("once"), Line::Published).iter().all(|cell| cell == "-"), "it sorted in every node");
     let memory = titled(&all, "4.6", "Memory of structures");
     assert_eq!(row(&memory, &alien, Line::Value)[3], "kd, BVH, ropes");
-    assert_eq!(row(&memory, &["Dino", "scan:spikes=24 (108000)"], Line::Value)[3], "BVH, kd, ropes");
+    assert_eq!(row(&memory, &["Dino", "scan:spikes=1000 (108000)"], Line::Value)[3], "BVH, kd, ropes");
     let counts = titled(&all, "4.6", "What the sizes are made of");
     assert_eq!(row(&counts, &alien, Line::Value), ["1.000", "2.000", "0.938", "20.0", "45.0", "68.0"]);
+    assert!(memory.with_published && !counts.with_published, "a line of nothing but dashes");
     assert!(titled(&all, "4.6", "Expected costs").notes.iter().any(|note| note.contains("cost of 1")));
     // Every counterpart of a model has a row below the model's name, other scenes are last.
     let names: Vec<&str> = rates.rows.iter().map(|row| row.keys[0].as_str()).collect();
