@@ -190,7 +190,7 @@ fn devices_keep_their_counts() {
 
 #[test]
 fn presets_measure_a_scene_with_one_number_of_frames() {
-    for preset in ["quick", "thesis", "thesis-lite"] {
+    for preset in ["quick", "thesis", "thesis-lite", "rt2", "rt2-lite"] {
         let preset = Preset::load(TRACE.info(), preset).unwrap();
         for part in &preset.parts {
             let of_scene = preset.parts.iter().filter(|p| p.of("scene") == part.of("scene"));
