@@ -647,9 +647,17 @@ fn mistakes_in_presets_are_located() {
 #[test]
 fn presets_are_sound() {
     let plan = Plan::new(&TRACE, &Request::default()).unwrap();
-    assert_eq!((plan.preset.as_str(), plan.cases.len()), ("quick", 90));
-    assert_eq!(plan.axes()["structure"], ["grid", "kdtree", "bvh", "bvh-stack", "ploc-stack"]);
+    assert_eq!((plan.preset.as_str(), plan.cases.len()), ("quick", 90 + 14));
+    assert_eq!(plan.axes()["structure"], ["grid", "kdtree", "bvh", "bvh-stack", "ploc-stack", "bih"]);
     assert_eq!((plan.axes()["config"].len(), plan.axes()["resolution"].len()), (3, 2));
+    for (preset, cases) in [("rt2", 50), ("rt2-lite", 48)] {
+        // Without the catalogue's bunny, dragon and sponza
+        let library = Library { scenes_folder: Some("nowhere".into()), scene_time: None };
+        let request = Request { preset: Some(preset.into()), library, ..Request::default() };
+        let plan = Plan::new(&TRACE, &request).unwrap();
+        assert_eq!((plan.cases.len(), plan.absent.len()), (cases, 3), "{preset}");
+        assert_eq!(plan.axes()["resolution"], ["1408x768"]);
+    }
     // The thesis's scenes are not here: nothing takes their place.
     let nowhere = tempfile::tempdir().unwrap();
     let library = Library { scenes_folder: Some(nowhere.path().into()), scene_time: None };
