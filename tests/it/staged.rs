@@ -99,3 +99,17 @@ fn rays_that_go_together_are_not_parted() {
         assert_eq!(problem, expected);
     }
 }
+
+/// Each part changes the stage three times, more often than a frame has timestamps: such a frame is timed as a whole.
+#[test]
+fn a_frame_of_very_many_parts_is_timed_as_a_whole() {
+    let Some(gpu) = gpu() else { return };
+    let scene = shiny(soup(30, 15, false));
+    let selection = Selection::parse("bvh-stack:reflections=staged,tiles=28").unwrap();
+    let built = selection.build(&scene, 1).unwrap();
+    let mut prepared = gpu.prepare(&scene, &*built.structure, selection.method()).unwrap();
+    let size = Size { width: 224, height: 224 };
+    let times = prepared.time_path(Config::PSR, &[view(1)], size, &|| false).unwrap();
+    assert_eq!(prepared.timed().unwrap().dispatches, 28 * 28 * 3);
+    assert_eq!(times[0].stages.len(), usize::from(times[0].device_ns.is_some()));
+}

@@ -76,7 +76,7 @@ fn traverse(ray: Ray, limit: f32, any: bool, alive: bool) -> u32 {
         if (best.t < exit.t) {
             return best.triangle_ref;
         }
-        // A cell of no length is no better than an edge
+        // A cell of no length is treated like an edge
         if (exit.edge || exit.t <= t) {
             break;
         }

@@ -1,5 +1,5 @@
-// Appends to the list of the next pass. Its order depends on timing, and no result on its order: rays do not wait for
-// each other.
+// Appends to the list of the next pass. The order differs from run to run, and no result depends on it: each path is
+// traced by itself.
 
 struct Growing {
     groups: atomic<u32>,

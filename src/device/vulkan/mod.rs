@@ -17,4 +17,4 @@ pub use cost::KernelCost;
 pub use device::{VulkanDevice, VulkanOptions};
 pub use pipeline::{Bindings, PipelineDescription, Resource};
 pub use read_buffer::{ReadBuffer, TEXTURE_WIDTH, Texture};
-pub use run::{Dispatch, Groups};
+pub use run::{Dispatch, Groups, MAX_TIMESTAMPS};

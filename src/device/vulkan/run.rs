@@ -14,8 +14,8 @@ use std::time::{Duration, Instant};
 /// Submissions in flight: the next one is there before the last one is done.
 const IN_FLIGHT: usize = 2;
 
-/// Most timestamps of a query set.
-const MAX_TIMESTAMPS: usize = wgpu::QUERY_SET_MAX_QUERIES as usize;
+/// Most timestamps of a query set, and so of a frame.
+pub const MAX_TIMESTAMPS: usize = wgpu::QUERY_SET_MAX_QUERIES as usize;
 
 /// Work-groups of a dispatch.
 #[derive(Clone, Copy)]

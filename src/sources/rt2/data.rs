@@ -114,7 +114,7 @@ pub struct Data {
     pub notes: Vec<String>,
 }
 
-/// What a step costs in a claim about frames.
+/// What a frame costs in a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cost {
     /// The mean frame time in milliseconds.

@@ -55,6 +55,9 @@ pub struct SceneKey {
 /// Number of triangles that are asked of the evenly meshed scan for each model.
 const SCANS: [(&str, Model); 3] = [("31600", Model::Alien), ("104000", Model::Dino), ("837000", Model::Dragon)];
 
+/// So many spikes give the scan of the Dino's size its order of memory.
+const SPIKES: u32 = 1000;
+
 /// Names of Stanford's dragon, and its number of triangles.
 const DRAGON: ([&str; 2], u64) = (["dragon", "dragon_vrip"], 871_414);
 
@@ -91,7 +94,17 @@ impl SceneKey {
 
     /// True for a scan with spikes: the pointed shape.
     pub fn is_pointed(&self) -> bool {
-        self.base() == "scan" && self.options().any(|(key, value)| key == "spikes" && value != "0")
+        self.spikes() > 0
+    }
+
+    fn spikes(&self) -> u32 {
+        let spikes = self.options().find(|(key, _)| *key == "spikes").filter(|_| self.base() == "scan");
+        spikes.and_then(|(_, number)| number.parse().ok()).unwrap_or(0)
+    }
+
+    /// The name of a built-in scene, or the stem of a file.
+    pub fn stem(&self) -> &str {
+        names::stem(self.base())
     }
 
     /// True for an evenly meshed scan of any size.
@@ -103,8 +116,7 @@ impl SceneKey {
     pub fn short(&self) -> String {
         let shape = if self.is_pointed() { "spiky " } else { "" };
         let path = if self.path.is_empty() { String::new() } else { format!(" along {}", self.path) };
-        let stem = names::stem(self.base());
-        format!("{shape}{stem} {:.0} k{path}", self.triangles as f64 / 1e3)
+        format!("{shape}{} {:.0} k{path}", self.stem(), self.triangles as f64 / 1e3)
     }
 
     fn options(&self) -> impl Iterator<Item = (&str, &str)> {
@@ -114,16 +126,17 @@ impl SceneKey {
 
     fn find_role(&self) -> Role {
         let (names, triangles) = DRAGON;
-        let is_dragon = names.contains(&names::stem(self.base())) && self.triangles == triangles;
+        let is_dragon = names.contains(&self.stem()) && self.triangles == triangles;
         if is_dragon && !self.name.contains(':') {
             return Role::Of(Model::Dragon);
         }
-        if self.is_pointed() {
-            return Role::Of(Model::Dino);
-        }
-        let asked = self.options().find(|(key, _)| *key == "triangles").filter(|_| self.is_even_scan());
+        let asked = self.options().find(|(key, _)| *key == "triangles").filter(|_| self.base() == "scan");
         let found = asked.and_then(|(_, number)| SCANS.into_iter().find(|(wanted, _)| *wanted == number));
-        found.map_or(Role::Other, |(_, model)| Role::Of(model))
+        match found {
+            Some((_, model)) if !self.is_pointed() => Role::Of(model),
+            Some((_, Model::Dino)) if self.spikes() >= SPIKES => Role::Of(Model::Dino),
+            _ => Role::Other,
+        }
     }
 }
 

@@ -120,7 +120,7 @@ counters! {
     restart: restarts,
     /// A rope is followed from a leaf to its neighbour.
     rope: ropes,
-    /// A search by ropes is given up and begun again with a stack.
+    /// A search by ropes is given up, and the ray is finished by the search with a trail.
     fallback: fallbacks,
     /// A visit of an inner node of a BIH that enters neither child.
     skip: skips,

@@ -60,12 +60,27 @@ pub fn gains(data: &Data, published: &Published) -> Vec<Case> {
     models(data, &Model::ALL).iter().filter_map(of).collect()
 }
 
-/// Scenes whose structures were built, but not by one builder.
-pub fn left_out(data: &Data) -> Vec<String> {
+/// Scenes of claim 4 whose structures were built, but not by one builder.
+pub fn unlike_between(data: &Data) -> Vec<String> {
+    left_out(data, &[Model::Alien, Model::Dino], THREE)
+}
+
+/// The same for claim 4a.
+pub fn unlike_slowest(data: &Data) -> Vec<String> {
+    left_out(data, &[Model::Dragon], THREE)
+}
+
+/// The same for claim 5.
+pub fn unlike_gains(data: &Data) -> Vec<String> {
+    left_out(data, &Model::ALL, TWO)
+}
+
+fn left_out<const N: usize>(data: &Data, of: &[Model], structures: [&Structure; N]) -> Vec<String> {
     let is_left_out = |scene: &&SceneKey| {
-        TWO.iter().all(|structure| data.built(None, scene, &[structure]).is_some()) && times(data, scene, TWO).is_none()
+        let all_built = structures.iter().all(|structure| data.built(None, scene, &[structure]).is_some());
+        all_built && times(data, scene, structures).is_none()
     };
-    let scenes = models(data, &Model::ALL);
+    let scenes = models(data, of);
     let names: Vec<String> = scenes.iter().filter(is_left_out).map(ToString::to_string).collect();
     if names.is_empty() {
         return Vec::new();

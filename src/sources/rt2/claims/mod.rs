@@ -77,7 +77,7 @@ fn of_rows(claim: &Claim, cases: Vec<Case>, data: &Data, printed: &[Case]) -> Fi
 
 /// The measurements of a device that were made for a claim and never gave a result.
 fn failed(claim: &Claim, frames: &Frames) -> Vec<String> {
-    let later = |f: &Failure| {
+    let is_measured = |f: &Failure| {
         frames.data.measurements.iter().map(|m| &m.frame).any(|m| {
             (m.device, &m.scene, &m.structure, &m.variant, m.width, m.height)
                 == (f.device, &f.scene, &f.structure, &f.variant, f.width, f.height)
@@ -88,7 +88,7 @@ fn failed(claim: &Claim, frames: &Frames) -> Vec<String> {
             && (f.width, f.height) == frames.size
             && claim.structures.iter().any(|s| s.is(&f.structure, &f.variant))
             && (claim.scenes)(&f.scene)
-            && !later(f)
+            && !is_measured(f)
     };
     frames.data.failures.iter().filter(of_claim).map(|f| format!("{} ({})", f.what, f.message)).collect()
 }

@@ -14,7 +14,7 @@ const ROPE_BYTES: u64 = 48;
 const COST_MARGIN: f64 = 0.01;
 
 /// Scenes of evenly spread triangles, besides the evenly meshed scans.
-const EVEN: [&str; 3] = ["bunny", "bun_zipper", "dragon"];
+const EVEN: [&str; 4] = ["bunny", "bun_zipper", "dragon", "dragon_vrip"];
 
 /// Scenes of unevenly spread triangles.
 const UNEVEN: [&str; 2] = ["room", "sponza"];
@@ -79,8 +79,8 @@ pub fn bytes_of_ropes(data: &Data) -> Vec<Case> {
 /// Claim 9: spatial splits lower the expected cost on even scenes, and do not on uneven ones.
 pub fn suits(data: &Data) -> Vec<Case> {
     let of = |scene: &SceneKey| {
-        let is_even = scene.is_even_scan() || EVEN.contains(&scene.base());
-        if !is_even && !UNEVEN.contains(&scene.base()) {
+        let is_even = scene.is_even_scan() || EVEN.contains(&scene.stem());
+        if !is_even && !UNEVEN.contains(&scene.stem()) {
             return None;
         }
         let cost = |trees: Trees| {

@@ -72,8 +72,7 @@ impl Context<'_> {
     }
 
     /// The order of structures by their numbers, the least first (`most_first`: the greatest), with the printed one.
-    /// Equal ones keep the order
-    /// in which they are given. It needs the numbers of all.
+    /// Equal ones keep the order in which they are given. It needs the numbers of all.
     pub fn order(&self, place: &Place, quantity: Quantity, numbers: &[(&str, Option<f64>)], most_first: bool) -> Cell {
         let known: Option<Vec<(&str, f64)>> = numbers.iter().map(|(name, number)| Some((*name, (*number)?))).collect();
         let words = known.map(|mut known| {

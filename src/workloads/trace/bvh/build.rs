@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::workloads::trace::bvh::bins::{Binning, Item, Rows, Splitter};
 use crate::workloads::trace::bvh::partition::{Partitioner, Sides, centroid_bounds, halve};
-use crate::workloads::trace::bvh::{Bvh, BvhNode, MAX_DEPTH};
+use crate::workloads::trace::bvh::{Bvh, BvhNode, MAX_DEPTH, MAX_REFERENCES};
 use crate::workloads::trace::common::part::{Below, Part};
 use crate::workloads::trace::common::prims::{self, CHUNK, Prim};
 use crate::workloads::trace::common::sah::{CostModel, half_area, unit};
@@ -46,7 +46,8 @@ pub fn build(scene: &Scene, config: &Config) -> Result<Bvh> {
     if items.is_empty() {
         return Ok(Bvh { bounds, nodes: vec![BvhNode::NONE; 2], triangle_refs: Vec::new(), depth: 0, spatial: None });
     }
-    check_depth(items.len(), config.max_depth)?;
+    check_number(scene, items.len())?;
+    check_depth(items.len(), config.max_leaf, config.max_depth)?;
     let builder = Builder { config: *config, unit: unit(&bounds) };
     let rows = Rows { min: bounds.min.extend(0.0), max: bounds.max.extend(0.0) };
     let part = builder.grow(&mut items, 0, rows, 0);
@@ -160,9 +161,18 @@ pub(crate) fn is_near_the_bottom(items: usize, depth: u32, max_depth: u32) -> bo
     depth + halvings(items) >= max_depth
 }
 
+/// Refuses more triangles than the references of a tree can name.
+pub(crate) fn check_number(scene: &Scene, triangles: usize) -> Result<()> {
+    if triangles <= MAX_REFERENCES {
+        return Ok(());
+    }
+    let problem = format!("{triangles} triangles are more than a BVH can hold ({MAX_REFERENCES})");
+    Err(Error::too_large(&scene.name, problem, "use a smaller scene"))
+}
+
 /// Refuses a greatest depth that does not hold even if every node is halved.
-pub(crate) fn check_depth(items: usize, max_depth: u32) -> Result<()> {
-    match halvings(items) {
+pub(crate) fn check_depth(items: usize, max_leaf: usize, max_depth: u32) -> Result<()> {
+    match items.div_ceil(max_leaf).next_power_of_two().trailing_zeros() {
         levels if levels <= max_depth => Ok(()),
         levels => {
             let problem = format!("{items} triangles may take {levels} levels, more than {max_depth}");

@@ -16,8 +16,8 @@ use crate::workloads::trace::traverse::{Best, GROUP, Lanes, STACK_SIZE, Traverse
 pub static BVH: Algorithm = Algorithm {
     name: "bvh",
     alias: "bvh-packet",
-    summary: "binned SAH BVH, packets of 8x8 rays with one shared stack (also: bvh-packet)",
-    paper: "Günther et al. 2007",
+    summary: "SAH BVH, packets of 8x8 rays with one shared stack (also: bvh-packet)",
+    paper: "Wald 2007; Wald, Boulos and Shirley 2007; Stich et al. 2009; Günther et al. 2007",
     builder: &TOP_DOWN,
     traversal: |_| &SHARED_STACK,
     options: &[VOTE, PACKET],

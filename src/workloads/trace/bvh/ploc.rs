@@ -6,6 +6,7 @@
 use crate::error::Result;
 use crate::math::Aabb;
 use crate::scene::Scene;
+use crate::workloads::trace::bvh::build::check_number;
 use crate::workloads::trace::bvh::ploc_passes;
 use crate::workloads::trace::bvh::{Bvh, BvhNode, MAX_DEPTH, MAX_LEAF};
 use crate::workloads::trace::common::prims::{self, Prim};
@@ -70,6 +71,7 @@ pub fn build(scene: &Scene, params: BvhBuildParams) -> Result<Option<Bvh>> {
             spatial: None,
         }));
     }
+    check_number(scene, prims.len())?;
     if is_endless(&prims, &bounds) {
         return Ok(None);
     }

@@ -9,7 +9,6 @@ use crate::workloads::trace::bvh::widened::{self, Widening};
 use crate::workloads::trace::bvh::{Bvh, BvhNode, KIND, PLOC, TOP_DOWN};
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::options::{Axis, GROUP, Kind, OptionInfo};
-
 use crate::workloads::trace::traverse::{Best, STACK_SIZE, TraverseIndependent, Triangles};
 
 /// A stack per ray in the same BVH as that of packets.

@@ -8,7 +8,7 @@
 use crate::error::Result;
 use crate::scene::Scene;
 use crate::workloads::trace::bvh::bins::Rows;
-use crate::workloads::trace::bvh::build::{check_depth, is_near_the_bottom};
+use crate::workloads::trace::bvh::build::{check_depth, check_number, is_near_the_bottom};
 use crate::workloads::trace::bvh::clip::Clipper;
 use crate::workloads::trace::bvh::lists::{Border, Pivot, around, cheapest, sort, sorted};
 use crate::workloads::trace::bvh::spatial::{FEW_LEAVES, MOST_REFERENCES, Sides, Spatial, SpatialConfig, Tally};
@@ -68,7 +68,8 @@ pub fn build(scene: &Scene, config: &Config) -> Result<Bvh> {
     if prims.is_empty() {
         return Ok(Bvh { bounds, nodes: vec![BvhNode::NONE; 2], triangle_refs: Vec::new(), depth: 0, spatial: None });
     }
-    check_depth(prims.len(), config.max_depth)?;
+    check_number(scene, prims.len())?;
+    check_depth(prims.len(), config.max_leaf, config.max_depth)?;
     let rows = Rows { min: bounds.min.extend(0.0), max: bounds.max.extend(0.0) };
     let unit = unit(&bounds);
     let spatial = config.spatial.map(|spatial| {
@@ -194,7 +195,7 @@ impl Builder<'_> {
         scratch: &mut Scratch,
     ) -> (BvhNode, u32) {
         let count = lists[0].len();
-        let split = if count > 1 || count > self.config.max_leaf {
+        let split = if count > 1 {
             self.split_or_leaf(lists.each_mut().map(|list| &mut **list), &node, &mut scratch.costs)
         } else {
             None

@@ -4,7 +4,7 @@ use super::kernels::{Entry, StagedPass};
 use super::prepared::GpuPrepared;
 use super::shared::{FrameUniform, LENGTH, WaitingPath};
 use crate::camera::View;
-use crate::device::vulkan::{Bindings, Buffer, Dispatch, Groups, Pipeline, Resource};
+use crate::device::vulkan::{Bindings, Buffer, Dispatch, Groups, MAX_TIMESTAMPS, Pipeline, Resource};
 use crate::device::{Frame, Pass, Stage, Submissions};
 use crate::error::{Error, Result};
 use crate::scene::Light;
@@ -197,7 +197,9 @@ impl Rendering<'_> {
 
     /// The parts of all frames, each as a frame.
     pub fn parts(&self) -> impl Iterator<Item = Frame<Dispatch<'_>>> {
-        let stages = if self.pipelines.len() > 1 { &STAGED[..] } else { &RENDER[..] };
+        // Many parts change the stage more often than a frame's timestamps can follow: then the frame is timed as a whole
+        let passes = self.inputs.parts_per_frame * self.pipelines.len();
+        let by_stage = self.pipelines.len() > 1 && 2 * passes <= MAX_TIMESTAMPS;
         // A watchdog asks for parts, which it is to see alone; without parts the host is not to be seen between passes
         let is_whole = self.inputs.parts_per_frame == 1 && self.pipelines.len() > 1;
         let submissions = if is_whole { Submissions::PerFrame } else { Submissions::PerPass };
@@ -212,7 +214,7 @@ impl Rendering<'_> {
                 };
                 let offset = Some(part * self.inputs.stride);
                 Pass {
-                    stage: stages[pass],
+                    stage: if by_stage { STAGED[pass] } else { RENDER[0] },
                     work: Dispatch { pipeline, bindings: &self.bindings[pass], offset, groups },
                 }
             });

@@ -4,7 +4,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
-/// `Frame` of `kernels/trace/render.wgsl`: one frame, or a part of it.
+/// `Frame` of `kernels/trace/path.wgsl`: one frame, or a part of it.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 #[allow(missing_docs)] // the fields are described in the kernel

@@ -99,7 +99,7 @@ impl TraverseIndependent for KdRopes<'_> {
             if best.t < exit.t {
                 return best.triangle_ref;
             }
-            // A cell of no length is no better than an edge
+            // A cell of no length is treated like an edge
             if exit.edge || exit.t <= t {
                 break;
             }

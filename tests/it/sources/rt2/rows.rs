@@ -16,8 +16,10 @@ fn a_scene_is_a_counterpart_by_name_and_options() {
     for (name, triangles, expected) in [
         ("scan:triangles=31600", 32_168, Some(Model::Alien)),
         ("scan:triangles=104000", 107_516, Some(Model::Dino)),
-        ("scan:triangles=104000,spikes=24", 108_000, Some(Model::Dino)),
-        ("scan:spikes=5", 71_000, Some(Model::Dino)),
+        ("scan:triangles=104000,spikes=1000", 108_000, Some(Model::Dino)),
+        ("scan:triangles=104000,spikes=24", 108_000, None),
+        ("scan:triangles=31600,spikes=1000", 33_000, None),
+        ("scan:spikes=1000", 71_000, None),
         ("scan:triangles=837000", 847_216, Some(Model::Dragon)),
         ("dragon", 871_414, Some(Model::Dragon)),
         ("dragon_vrip.ply", 871_414, Some(Model::Dragon)),
