@@ -61,7 +61,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         return Err(Error::argument("--runs", format!("{} runs", arguments.runs), "give 1 to 1000"));
     }
     let stop = interrupt::flag(|| output::note("stopping; Ctrl-C again ends the program at once"))?;
-    let mut job = Job { arguments, interrupted: &|| stop.load(Ordering::Relaxed), rows: Vec::new(), broken: 0 };
+    let mut job = Job { arguments, interrupted: &|| stop.load(Ordering::Relaxed), rows: Vec::new(), broken: 0, refused: None };
     let ended = arguments.scene.iter().try_for_each(|name| job.scene(name, &selections));
     if matches!(ended, Ok(()) | Err(Error::Interrupted)) && !(ended.is_err() && job.rows.is_empty()) {
         let rows: Vec<artifacts::Row> = job.rows.iter().map(|(artifact, scene)| (artifact, scene)).collect();
@@ -70,7 +70,10 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
             files::replace(path, &artifacts::csv(&rows)?)?;
         }
     }
-    ended.map(|()| ExitCode::from(u8::from(job.broken > 0)))
+    match job.refused.filter(|_| job.rows.is_empty()) {
+        Some(refused) if ended.is_ok() => Err(refused),
+        _ => ended.map(|()| ExitCode::from(u8::from(job.broken > 0))),
+    }
 }
 
 /// The command's arguments and the results so far.
@@ -80,6 +83,8 @@ struct Job<'a> {
     rows: Vec<(Artifact, Input)>,
     /// How many structures are not valid.
     broken: usize,
+    /// Why the last structure was not built that cannot be.
+    refused: Option<Error>,
 }
 
 impl Job<'_> {
@@ -94,11 +99,21 @@ impl Job<'_> {
     }
 
     fn structure(&mut self, scene: &Arc<Scene>, record: &SceneRecord, selection: &Selection) -> Result<()> {
-        let name = format!("{} {}", scene.name, selection.name());
-        let running = Building::begin(&format!("{} of {}", selection.name(), scene.name));
+        let name = format!("{} {}", scene.name, selection.full_name());
+        let running = Building::begin(&format!("{} of {}", selection.full_name(), scene.name));
         let Arguments { runs, threads, .. } = self.arguments;
-        let built = building::build_repeatedly(selection, scene, *threads, *runs, self.interrupted)?;
+        let built = building::build_repeatedly(selection, scene, *threads, *runs, self.interrupted);
         drop(running);
+        let built = match built {
+            Ok(built) => built,
+            // What one structure cannot do costs no other one
+            Err(error @ Error::Refused(_)) => {
+                output::note(&format!("{name}: skipped: {error}"));
+                self.refused = Some(error);
+                return Ok(());
+            }
+            Err(error) => return Err(error),
+        };
         if !built.note.is_empty() {
             output::note(&format!("{name}: {}", built.note));
         }

@@ -617,6 +617,19 @@ fn build_reports_structures() {
 }
 
 #[test]
+fn what_one_structure_cannot_do_costs_no_other_one() {
+    let arguments = "build --scene scan:triangles=1000 --structure bvh:max_depth=2,bvh:max_leaf=3,bih --validate";
+    let output = run(arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let notes = stderr(&output);
+    assert!(notes.contains("scan:triangles=1000 bvh:max_depth=2: skipped: too large"), "{notes}");
+    assert!(notes.contains("bvh:max_leaf=3: valid") && notes.contains("bih: valid"), "{notes}");
+    assert!(stdout(&output).contains("bvh:max_leaf=3") && stdout(&output).contains("bih"), "{}", stdout(&output));
+    // Without any structure there is an error
+    one_error(&run("build --scene scan:triangles=1000 --structure bvh:max_depth=2"), &["max_depth"]);
+}
+
+#[test]
 fn the_catalogue_is_listed_and_scenes_are_converted() {
     let text = good("scenes list");
     for words in [

@@ -11,6 +11,7 @@ use rtbench::scene::{self, Scene};
 use rtbench::workloads::trace::CpuBackend;
 use rtbench::workloads::trace::backend::{Backend, Counters, GivenRay};
 use rtbench::workloads::trace::common::memory::rt2;
+use rtbench::workloads::trace::counting::Counted;
 use rtbench::workloads::trace::intersect::TriangleTest;
 use rtbench::workloads::trace::kdtree::ropes::KdRopes;
 use rtbench::workloads::trace::kdtree::stack::KdStack;
@@ -265,4 +266,17 @@ fn shadows_and_reflections_are_those_of_a_full_stack() {
     }
     let followed: u32 = ropes.iter().map(|pixel| pixel.counters.iter().map(|c| c.ropes).sum::<u32>()).sum();
     assert!(followed > 0 && Hit::NONE.triangle == MISS);
+}
+
+/// A row whose rays go without ropes says so.
+#[test]
+fn many_rays_without_ropes_are_a_warning() {
+    let mut counted = Counted::default();
+    counted.sums[0].rays = 1000;
+    counted.sums[1].rays = 1000;
+    counted.sums[0].fallbacks = 20;
+    assert_eq!(counted.warnings(1), [""; 0]);
+    counted.sums[1].fallbacks = 1;
+    let warnings = counted.warnings(1);
+    assert!(warnings.len() == 1 && warnings[0].contains("without ropes"), "{warnings:?}");
 }

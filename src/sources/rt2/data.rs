@@ -1,7 +1,7 @@
 //! The numbers behind tables, figures and claims, by scene and structure.
 
 use super::models::{Model, SceneKey};
-use super::structures::Structure;
+use super::structures::{Structure, is_own};
 use crate::compare::judge::{UNKNOWN_NOISE_PCT, Uncertain};
 use crate::sources::convention::Steps;
 use crate::sources::rows::{self, BuiltBy, Device};
@@ -163,7 +163,10 @@ impl Data {
     /// the document's own, if it was measured, otherwise the size with most rows, of equals the largest.
     pub fn size(&self, device: usize, published: Size, width: Option<u32>) -> Size {
         let of_device = || self.measurements.iter().map(|m| &m.frame).filter(move |f| f.device == device);
-        let sizes: Vec<Size> = of_device().map(|f| (f.width, f.height)).collect();
+        // Rows of other structures, such as a grid's, are in no table
+        let shown: Vec<Size> =
+            of_device().filter(|f| is_own(&f.structure, &f.variant)).map(|f| (f.width, f.height)).collect();
+        let sizes = if shown.is_empty() { of_device().map(|f| (f.width, f.height)).collect() } else { shown };
         if let Some(width) = width {
             return sizes.into_iter().filter(|size| size.0 == width).max().unwrap_or((width, width));
         }

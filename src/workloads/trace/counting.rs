@@ -7,6 +7,9 @@ use crate::camera::View;
 use crate::error::Result;
 use crate::math::MISS;
 
+/// The share of rays that ropes are given up for, in percent, from which a row has a warning.
+const GIVEN_UP: f64 = 1.0;
+
 /// What the counting kernel found along a path.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Counted {
@@ -29,7 +32,20 @@ impl Counted {
             let first = found.first()?;
             Some(format!("{what} in {} of {frames} frames (the first: {first}): check the camera path", found.len()))
         };
-        [of(&self.empty, what), of(&self.blocked, near)].into_iter().flatten().collect()
+        [of(&self.empty, what), of(&self.blocked, near)].into_iter().flatten().chain(self.given_up()).collect()
+    }
+
+    /// Searches by ropes that are given up are exact, but they are not what a row about ropes is to show.
+    fn given_up(&self) -> Option<String> {
+        let sum = |of: fn(&CounterSums) -> u64| self.sums.iter().map(of).sum::<u64>();
+        let (given_up, rays) = (sum(|sums| sums.fallbacks), sum(|sums| sums.rays));
+        let percent = 100.0 * given_up as f64 / rays.max(1) as f64;
+        (percent > GIVEN_UP).then(|| {
+            format!(
+                "{percent:.1} % of the rays are finished without ropes: they start in a plane of the tree, or pass edges \
+                 of cells"
+            )
+        })
     }
 }
 

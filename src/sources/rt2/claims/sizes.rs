@@ -90,12 +90,10 @@ pub fn suits(data: &Data) -> Vec<Case> {
         let (spatial, object) = (cost(SPATIALS)?, cost(SWEPT)?);
         let lower = less(spatial, object);
         let outcome = if is_even { lower } else { not(lower) };
-        let numbers = format!(
-            "spatial {:.2}, object {:.2}: {:+.1} %",
-            spatial.value,
-            object.value,
-            100.0 * (spatial.value / object.value - 1.0)
-        );
+        // No sign where a tenth of a percent shows nothing
+        let tenths = (1000.0 * (spatial.value / object.value - 1.0)).round();
+        let change = if tenths == 0.0 { "0.0".to_owned() } else { format!("{:+.1}", tenths / 10.0) };
+        let numbers = format!("spatial {:.2}, object {:.2}: {change} %", spatial.value, object.value);
         Some(case(scene, if is_even { "even" } else { "uneven" }, outcome, numbers))
     };
     data.scenes_built().iter().filter_map(of).collect()

@@ -168,8 +168,8 @@ impl Spatial<'_> {
         Some(Sides { lists: [left, right], bounds: sides.map(|side| side.bounds), spare: spare - divided })
     }
 
-    /// Where a reference across a plane goes: both of its parts to their sides, or the whole to one of them, whatever is
-    /// cheapest with what is there already; the whole where it may not be divided.
+    /// Where a reference across a plane goes: both of its parts to their sides, or the whole to one of them, whatever
+    /// is cheapest with what is there already; the whole where it may not be divided.
     fn place(
         &self,
         reference: &Prim,

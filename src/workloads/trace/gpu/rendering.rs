@@ -197,7 +197,7 @@ impl Rendering<'_> {
 
     /// The parts of all frames, each as a frame.
     pub fn parts(&self) -> impl Iterator<Item = Frame<Dispatch<'_>>> {
-        // Many parts change the stage more often than a frame's timestamps can follow: then the frame is timed as a whole
+        // Many parts change the stage more often than a frame has timestamps: then the frame is timed as a whole
         let passes = self.inputs.parts_per_frame * self.pipelines.len();
         let by_stage = self.pipelines.len() > 1 && 2 * passes <= MAX_TIMESTAMPS;
         // A watchdog asks for parts, which it is to see alone; without parts the host is not to be seen between passes
