@@ -61,7 +61,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         return Err(Error::argument("--runs", format!("{} runs", arguments.runs), "give 1 to 1000"));
     }
     let stop = interrupt::flag(|| output::note("stopping; Ctrl-C again ends the program at once"))?;
-    let mut job = Job { arguments, interrupted: &|| stop.load(Ordering::Relaxed), rows: Vec::new(), broken: 0, refused: None };
+    let mut job =
+        Job { arguments, interrupted: &|| stop.load(Ordering::Relaxed), rows: Vec::new(), broken: 0, refused: None };
     let ended = arguments.scene.iter().try_for_each(|name| job.scene(name, &selections));
     if matches!(ended, Ok(()) | Err(Error::Interrupted)) && !(ended.is_err() && job.rows.is_empty()) {
         let rows: Vec<artifacts::Row> = job.rows.iter().map(|(artifact, scene)| (artifact, scene)).collect();

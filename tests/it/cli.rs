@@ -300,7 +300,7 @@ const LONG: &str = "--structure grid,ploc-stack:preset=very-slow --threads 1";
 fn ctrl_c_during_a_build_reports_the_finished_structures() {
     let output = interrupted_at(
         &format!("build --scene scan:triangles=300000 {LONG}"),
-        "rtbench: building ploc-stack of scan:triangles=300000",
+        "rtbench: building ploc-stack:preset=very-slow of scan:triangles=300000",
     );
     // The structure that was built before is reported.
     assert!(stdout(&output).contains(" grid "), "{}", stdout(&output));
