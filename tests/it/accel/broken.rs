@@ -278,7 +278,7 @@ fn in_ropes() {
     ];
     assert_noticed(&good, damages);
     tied.validate(&scene()).expect("good before it is broken");
-    // One step too low: beside the face, or over a part of it
+    // One step too low: next to the face, or over a part of it
     let low = |&place: &Place| {
         let mut broken = good.clone();
         let target = *rope(&mut broken, place);

@@ -57,7 +57,7 @@ fn every_split_is_the_cheapest_of_all() {
         let tree: KdTree = build_as("kdtree:build=sort,thin=0", &scene);
         assert!(tree.nodes.len() > 300);
         assert_eq!(inexact(&tree, &scene), 0);
-        // Planes that are somewhat beside the best one are seen, and so are leaves that should have been split
+        // Planes near the best one are seen, and so are leaves that should have been split
         let mut moved = tree.clone();
         let (root, extent) = (tree.nodes[0], tree.bounds.extent());
         moved.nodes[0] = KdNode::inner(root.axis() as u32, root.split() + 0.02 * extent[root.axis()], root.right());

@@ -8,7 +8,7 @@ use rtbench::workloads::trace::{Selection, algorithms};
 /// Mutated texts of each kind.
 const VARIANTS: usize = 3_000;
 
-/// Options and values of the tables, put together at random, and values that stand at the ends of ranges or beyond.
+/// Options and values of the tables, put together at random, and values that are at the ends of ranges or beyond them.
 fn texts() -> Vec<String> {
     let mut random = random(17);
     let mut below = |limit: usize| ((f64::from(random()) + 1.0) / 2.0 * limit as f64) as usize % limit;
