@@ -8,6 +8,7 @@ use crate::camera::{CameraPath, View};
 use crate::error::{Error, Result};
 use crate::guard;
 use crate::record::picture;
+use crate::workloads::size::parse_size;
 use crate::workloads::trace::backend::{Config, Counters, Prepared, Size, surface_epsilon};
 use crate::workloads::trace::{Selection, counting, pictures, rays, tracer};
 use clap::{Args, ValueEnum};
@@ -100,7 +101,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let selection = Selection::parse(&arguments.structure)?;
     interrupt::at_once()?;
     let config = rays::parse_config(&arguments.config)?;
-    let size = rays::parse_size(&arguments.resolution)?;
+    let size = parse_size(&arguments.resolution)?;
     arguments.device.check()?;
     let scene = arguments.library.load(&arguments.scene)?;
     let path = CameraPath::named_or_fitting(arguments.camera_path.as_deref(), &scene, config.shadows())?;

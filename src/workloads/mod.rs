@@ -1,5 +1,7 @@
 //! What rtbench can measure: one folder per workload, and one line in [`ALL`].
 
+pub mod size;
+pub mod spheres;
 pub mod trace;
 
 use crate::device::Source;

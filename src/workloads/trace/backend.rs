@@ -7,13 +7,13 @@ use crate::error::{Error, Result};
 use crate::math::{Aabb, Hit, MISS, T_MAX};
 use crate::scene::Scene;
 use crate::scene::placement::{exponent_of, power_of_two};
+pub use crate::workloads::size::Size;
 pub use crate::workloads::trace::count::Counters;
 use crate::workloads::trace::method::Group;
 pub use crate::workloads::trace::rays::{Config, MAX_BOUNCES};
 use crate::workloads::trace::{Method, Structure};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
 
 /// Counters of one pixel by ray type: primary, shadow, reflected.
 pub type PixelCounters = [Counters; 3];
@@ -77,22 +77,6 @@ impl Lengths {
     /// The lengths for a scene with these bounds.
     pub fn new(bounds: Aabb) -> Lengths {
         Lengths { epsilon: surface_epsilon(bounds), reach: shadow_reach(bounds) }
-    }
-}
-
-/// Width and height of an image in pixels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub struct Size {
-    /// Pixels per row.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-}
-
-impl Size {
-    /// Number of pixels.
-    pub fn pixels(self) -> usize {
-        self.width as usize * self.height as usize
     }
 }
 

@@ -5,6 +5,7 @@ use super::backend::Size;
 use super::rays::{self, Config};
 use crate::error::{Error, Result};
 use crate::harness::workload::Case;
+use crate::workloads::size::parse_size;
 
 /// What one row measures.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,7 +70,7 @@ impl TraceCase {
         Ok(TraceCase {
             selection: Selection::parse(&case.group)?,
             config: rays::parse_config(case.axis("config"))?,
-            size: rays::parse_size(case.axis("resolution"))?,
+            size: parse_size(case.axis("resolution"))?,
             frames,
             camera_path: case.axis("camera_path").to_owned(),
         })

@@ -1,6 +1,5 @@
 //! Ray configurations: which rays a frame casts.
 
-use super::backend::Size;
 use crate::error::{Error, Result};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -44,9 +43,6 @@ impl Config {
     }
 }
 
-/// Most pixels of an image on any device: a frame's pixels are also held in main memory.
-pub const MAX_PIXELS: u64 = 1 << 26;
-
 /// A ray configuration by name, in any case.
 ///
 /// # Errors
@@ -54,24 +50,4 @@ pub const MAX_PIXELS: u64 = 1 << 26;
 pub fn parse_config(text: &str) -> Result<Config> {
     let found = Config::named(&text.to_uppercase());
     found.ok_or_else(|| Error::argument("--config", format!("unknown configuration {text:?}"), "give P, PS or PSR"))
-}
-
-/// `N` or `WxH`.
-///
-/// # Errors
-/// [`Error::Input`].
-pub fn parse_size(text: &str) -> Result<Size> {
-    let wrong =
-        |problem: String| Error::argument("--resolution", problem, "give N or WxH in pixels, as 512 or 640x480");
-    let (width, height) = text.split_once(['x', 'X']).unwrap_or((text, text));
-    match (width.trim().parse::<u32>(), height.trim().parse::<u32>()) {
-        (Ok(0), _) | (_, Ok(0)) => Err(wrong(format!("{text} has no pixels"))),
-        (Ok(width), Ok(height)) => {
-            if u64::from(width) * u64::from(height) > MAX_PIXELS {
-                return Err(wrong(format!("{text} has more than {MAX_PIXELS} pixels")));
-            }
-            Ok(Size { width, height })
-        }
-        _ => Err(wrong(format!("{text:?} is no image size"))),
-    }
 }

@@ -16,6 +16,7 @@ use crate::record::journal::Journal;
 use crate::record::row::{Metric, Row, Value};
 use crate::record::statistics::{FrameStatistics, round};
 use crate::scene;
+use crate::workloads::size::parse_size;
 
 /// The workload. Tests decorate its tracers with faults.
 #[derive(Default)]
@@ -175,7 +176,7 @@ impl Workload for Trace {
             }
         }
         let configs = parse_list(part.of("config"), rays::parse_config)?;
-        let sizes = parse_list(part.of("resolution"), rays::parse_size)?;
+        let sizes = parse_list(part.of("resolution"), parse_size)?;
         for axis in ["scene", "structure", "config", "resolution"] {
             if part.of(axis).is_empty() {
                 let hint = format!("give --{axis}, or {axis} in the preset");

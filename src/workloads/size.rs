@@ -1,0 +1,42 @@
+//! Sizes of images, which all workloads take in the same form.
+
+use crate::error::{Error, Result};
+
+/// An image's size in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Size {
+    /// Pixels per row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+impl Size {
+    /// Number of pixels.
+    pub fn pixels(self) -> usize {
+        self.width as usize * self.height as usize
+    }
+}
+
+/// Most pixels of an image on any device: a frame's pixels are also held in main memory.
+pub const MAX_PIXELS: u64 = 1 << 26;
+
+/// `N` or `WxH`.
+///
+/// # Errors
+/// [`Error::Input`].
+pub fn parse_size(text: &str) -> Result<Size> {
+    let wrong =
+        |problem: String| Error::argument("--resolution", problem, "give N or WxH in pixels, as 512 or 640x480");
+    let (width, height) = text.split_once(['x', 'X']).unwrap_or((text, text));
+    match (width.trim().parse::<u32>(), height.trim().parse::<u32>()) {
+        (Ok(0), _) | (_, Ok(0)) => Err(wrong(format!("{text} has no pixels"))),
+        (Ok(width), Ok(height)) => {
+            if u64::from(width) * u64::from(height) > MAX_PIXELS {
+                return Err(wrong(format!("{text} has more than {MAX_PIXELS} pixels")));
+            }
+            Ok(Size { width, height })
+        }
+        _ => Err(wrong(format!("{text:?} is no image size"))),
+    }
+}
