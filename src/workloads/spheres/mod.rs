@@ -6,5 +6,6 @@
 
 pub mod count;
 pub mod options;
+pub mod render;
 pub mod scene;
 pub mod view;
