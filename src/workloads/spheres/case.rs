@@ -2,8 +2,8 @@
 
 use super::options::{Algorithm, HitRecord, MAX_TRIPS, Options, Precision, Renderer};
 use crate::error::{Error, Result};
-use crate::harness::workload::{Case, Part};
 use crate::harness::parse_list;
+use crate::harness::workload::{Case, Part};
 use crate::workloads::size::{Size, parse_size};
 
 /// What one row measures.
@@ -60,7 +60,11 @@ fn name<T: PartialEq>(all: &[(&'static str, T)], value: T) -> &'static str {
 fn parse_trips(text: &str) -> Result<u32> {
     let number = text.parse().ok().filter(|number| (1..=MAX_TRIPS).contains(number));
     number.ok_or_else(|| {
-        Error::argument("--trips", format!("'{text}' is no number of rays along a path"), format!("give 1 to {MAX_TRIPS}"))
+        Error::argument(
+            "--trips",
+            format!("'{text}' is no number of rays along a path"),
+            format!("give 1 to {MAX_TRIPS}"),
+        )
     })
 }
 

@@ -7,6 +7,7 @@
 pub mod case;
 pub mod count;
 pub mod options;
+pub mod render;
 pub mod renderer;
 pub mod scene;
 pub mod view;
