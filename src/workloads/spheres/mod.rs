@@ -4,8 +4,10 @@
 //! All renderers do the same operations in the same order, so that they make the same bits: no fused multiply-add, IEEE
 //! division and square root, and no literal constant in a sum of the shader. `tests/it/spheres/` compares them.
 
+pub mod case;
 pub mod count;
 pub mod options;
 pub mod render;
+pub mod renderer;
 pub mod scene;
 pub mod view;
