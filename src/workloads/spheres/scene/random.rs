@@ -80,10 +80,10 @@ fn rounded(x: f64) -> f64 {
     (x * 1e4).round() / 1e4
 }
 
-/// Spheres in different cells of a lattice of at least twice as many cells, none of which leaves its cell.
+/// Spheres in different cells of a lattice with a fifth of its cells empty or more, none of which leaves its cell.
 fn generate(count: usize, seed: u64) -> Scene {
     let mut random = Random(seed);
-    let side = (1..).find(|n| n * n * n >= 2 * count).unwrap_or(1);
+    let side = (1..).find(|n| 4 * n * n * n >= 5 * count).unwrap_or(1);
     let size = DIAGONAL / 3_f64.sqrt() / side as f64;
     let mut cells: Vec<u32> = (0..(side * side * side) as u32).collect();
     let mut spheres = Vec::with_capacity(count);
@@ -91,7 +91,7 @@ fn generate(count: usize, seed: u64) -> Scene {
         let other = index + random.below(cells.len() - index);
         cells.swap(index, other);
         let cell = cells[index] as usize;
-        let radius = size * random.between(0.26, 0.48);
+        let radius = size * random.between(0.3, 0.49);
         let mut along = |cell: usize| {
             let free = 0.5 * size - radius;
             rounded((cell as f64 + 0.5 - 0.5 * side as f64) * size + random.between(-free, free)) as f32
@@ -102,7 +102,7 @@ fn generate(count: usize, seed: u64) -> Scene {
     let camera = Camera {
         position: DVec3::new(0.0, 5.0, 20.0),
         forward: DVec3::new(0.0, -0.25, -1.0),
-        fov: 40.0,
+        fov: 36.0,
         focus_point: DVec3::ZERO,
         orbit_velocity: 0.5,
     };
