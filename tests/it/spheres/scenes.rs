@@ -313,7 +313,7 @@ fn spheres_of_random_scenes_do_not_meet() {
     for spec in ["random:spheres=100,seed=1", "random:spheres=300,seed=5"] {
         let spheres = Scene::load(spec).unwrap().spheres;
         for (index, a) in spheres.iter().enumerate() {
-            assert!(spheres[..index].iter().all(|b| a.position.distance(b.position) > a.radius + b.radius - 1e-3));
+            assert!(spheres[..index].iter().all(|b| a.position.distance(b.position) > a.radius + b.radius - 1e-5));
         }
     }
 }
