@@ -1,5 +1,6 @@
 //! What rtbench can measure: one folder per workload, and one line in [`ALL`].
 
+pub mod kernel_files;
 pub mod size;
 pub mod spheres;
 pub mod trace;

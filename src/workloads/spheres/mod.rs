@@ -6,6 +6,7 @@
 
 pub mod case;
 pub mod count;
+pub mod gpu;
 pub mod options;
 pub mod render;
 pub mod renderer;
