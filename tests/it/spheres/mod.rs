@@ -1,4 +1,6 @@
-//! The sphere tracer: pictures of all renderers, their work, closed forms.
+//! The sphere tracer: scenes and views, pictures of all renderers, their work, closed forms.
 
+mod orbit; // views over an orbit
 mod pictures; // every CPU renderer makes the reference's bits
+mod scenes; // scene files, their schema, names, the generator, mutations
 mod support; // scenes by hand, views in double precision
