@@ -21,8 +21,8 @@ fn frames(criterion: &mut Criterion) {
     group.sample_size(20);
     let mut renderers = vec![("sequential".to_owned(), Renderer::Sequential)];
     for lanes in support::LANES {
-        for level in levels::levels() {
-            let name = format!("simd-{}-{}", lanes.count(), levels::name(level));
+        for level in levels() {
+            let name = format!("simd-{}-{}", lanes.count(), level.name());
             renderers.push((name, Renderer::Simd(lanes, Some(level))));
         }
     }
