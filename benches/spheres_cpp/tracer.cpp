@@ -1,6 +1,6 @@
 // The scalar one-pass tracer in C++, as one writes it down: what the program's own scalar renderer is compared with.
 //
-// Standard input: uint32 rounds, width, height, trips, spheres; the view's 26 floats in the order of `View` below; then
+// Standard input: uint32 rounds, width, height, trips, spheres; the view's 27 floats in the order of `View` below; then
 // eight floats a sphere. Standard output: the picture as four floats a pixel. Standard error: the milliseconds of each
 // round, one a line.
 
