@@ -2,13 +2,14 @@
 
 use crate::error::Result;
 use crate::names;
+use crate::record::journal::Journal;
 use crate::record::picture::{FOLDER, STEPS};
 use crate::report::embed::Pictures;
 use crate::report::html::escape;
 use crate::sources::runs::RecordedRun;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The caption of a step map: a sweep renders all of them with the same structure.
+/// The caption of a step map, which only a sweep has: it renders all of them with the same structure.
 const STEP_MAP: &str = "steps of bvh-stack (one ray per thread) per pixel, all ray types: the brighter, the more";
 
 /// All pictures; if several runs have a scene, those of the last.
@@ -30,7 +31,7 @@ pub fn write(runs: &[RecordedRun]) -> Result<String> {
     if scenes.is_empty() {
         return Ok(format!("<p class=\"note\">The runs' folders have no pictures.</p>\n{notes}"));
     }
-    let recorded = runs.iter().flat_map(|run| &run.journal.structures).map(|structure| structure.scene.name.as_str());
+    let recorded = runs.iter().flat_map(|run| scenes_of(&run.general));
     let recorded: BTreeMap<String, &str> = recorded.map(|name| (names::distinct_slug(name), name)).collect();
     let pair = |file: &&str| {
         let scene = recorded.get(*file).unwrap_or(file);
@@ -39,4 +40,9 @@ pub fn write(runs: &[RecordedRun]) -> Result<String> {
         format!("<h3>{}</h3>\n<div class=\"pair\">\n{picture}{step_map}</div>\n", escape(scene))
     };
     Ok(scenes.iter().map(pair).collect::<String>() + &notes)
+}
+
+/// The names of the scenes that a run's rows and structures were measured on.
+fn scenes_of(journal: &Journal) -> impl Iterator<Item = &str> {
+    journal.inputs.iter().filter(|input| input.kind == "scene").map(|input| input.name.as_str())
 }

@@ -33,10 +33,8 @@ fn one(run: &RecordedRun) -> String {
     let load = e.load_average.map(|l| format!("{l:.2}")).join(", ");
     let variables: Vec<String> = e.variables.iter().map(|(name, value)| format!("{name}={value}")).collect();
     let packages: Vec<String> = p.program.packages.iter().map(|(name, version)| format!("{name} {version}")).collect();
-    let (rows, errors) = (
-        run.journal.configurations.len(),
-        run.journal.configurations.iter().filter(|c| c.status != Status::Ok).count(),
-    );
+    let (rows, errors) =
+        (run.general.rows.len(), run.general.rows.iter().filter(|row| row.status != Status::Ok).count());
     let of_devices = |text: &dyn Fn(&DeviceRecord) -> String| p.devices.iter().map(text).collect::<Vec<_>>().join("; ");
     let entries = [
         ("device", of_devices(&|d| d.info.description())),
@@ -55,7 +53,7 @@ fn one(run: &RecordedRun) -> String {
         ("command", p.arguments.join(" ")),
         ("preset", p.plan.preset.clone()),
         ("left out", list(&p.plan.absent)),
-        ("measured", format!("{rows} configurations, {errors} without a result; {} passes", p.plan.settings.passes)),
+        ("measured", format!("{rows} rows, {errors} without a result; {} passes", p.plan.settings.passes)),
         ("resumed", list(&run.journal.resumed.iter().map(|r| r.started.clone()).collect::<Vec<_>>())),
         ("end", end),
     ];

@@ -4,7 +4,7 @@ use super::data::{Built, Data, Failure, Frame, Measurement};
 use super::models::SceneKey;
 use super::structures::is_own;
 use crate::sources::rows::{Devices, Variant, choose_built, choose_frames, unlike_devices};
-use crate::sources::runs::RecordedRun;
+use crate::sources::runs::{RecordedRun, with_traces};
 use crate::workloads::trace::backend::Config;
 use crate::workloads::trace::record::SceneRecord;
 
@@ -22,7 +22,7 @@ pub fn data(runs: &[RecordedRun]) -> Data {
     let mut devices = Devices::default();
     let (mut built, mut frames) = (Vec::new(), Vec::new());
     let mut with_other_rays = 0;
-    for run in runs {
+    for run in with_traces(runs) {
         let provenance = &run.journal.provenance;
         let devices = devices.add(provenance);
         let built_here = run.journal.structures.iter().map(|r| Built::of(scene_key(&r.scene), r, provenance));

@@ -18,7 +18,7 @@ use super::{Options, Results, Rows, Section, Source};
 use crate::error::Result;
 use crate::report::figure::{Figure, Missing};
 use crate::report::{Origin, Table};
-use crate::sources::runs::RecordedRun;
+use crate::sources::runs::{RecordedRun, with_traces};
 use data::Data;
 use published::Published;
 
@@ -75,7 +75,7 @@ impl Results for Numbers {
     }
 
     fn lead(&self, runs: &[RecordedRun], rows: Rows) -> String {
-        report::lead(self.data.as_ref(), runs.len(), rows)
+        report::lead(self.data.as_ref(), with_traces(runs).len(), rows)
     }
 
     fn sections(&self, _runs: &[RecordedRun]) -> Vec<Section> {

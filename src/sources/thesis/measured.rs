@@ -8,7 +8,7 @@ use super::variant::Variant;
 use crate::sources::convention::Steps;
 use crate::sources::rows::{Built, Devices, choose_built, choose_frames, unlike_devices};
 use crate::sources::rt2;
-use crate::sources::runs::RecordedRun;
+use crate::sources::runs::{RecordedRun, with_traces};
 use crate::workloads::trace::record::{ConfigurationRecord, CounterSums, SceneRecord};
 use std::collections::HashMap;
 
@@ -26,7 +26,7 @@ pub fn data(runs: &[RecordedRun]) -> Data {
     let mut devices = Devices::default();
     let mut scenes: HashMap<SceneKey, usize> = HashMap::new();
     let (mut built, mut frames) = (Vec::new(), Vec::new());
-    for run in runs {
+    for run in with_traces(runs) {
         let provenance = &run.journal.provenance;
         let devices = devices.add(provenance);
         for record in &run.journal.structures {

@@ -20,7 +20,7 @@ use super::{Options, Results, Rows, Section, Source};
 use crate::error::Result;
 use crate::report::figure::{Figure, Missing};
 use crate::report::{Origin, Table};
-use crate::sources::runs::RecordedRun;
+use crate::sources::runs::{RecordedRun, with_traces};
 use data::Data;
 use published::{GT8600, GTX280};
 
@@ -77,7 +77,7 @@ impl Results for Numbers {
     }
 
     fn lead(&self, runs: &[RecordedRun], rows: Rows) -> String {
-        report::lead(&self.data, runs.len(), rows)
+        report::lead(&self.data, with_traces(runs).len(), rows)
     }
 
     fn sections(&self, runs: &[RecordedRun]) -> Vec<Section> {

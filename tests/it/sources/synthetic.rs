@@ -2,7 +2,7 @@
 
 use crate::fakes;
 use rtbench::device::DeviceType;
-use rtbench::record::journal::{JournalWriter, Record};
+use rtbench::record::journal::{Journal, JournalWriter, Record};
 use rtbench::record::row::{Samples, Status, TimingSource};
 use rtbench::record::run::End;
 use rtbench::sources::runs::RecordedRun;
@@ -29,10 +29,19 @@ impl Builder {
             load_average: [0.0; 3],
             message: "".into(),
         };
-        let (structures, configurations) = (Vec::new(), Vec::new());
-        let journal =
-            TraceJournal { provenance, structures, configurations, resumed: vec![], end: Some(end), truncated: None };
-        Builder { run: RecordedRun { journal, folder: "nowhere".into() }, noise: 0.0 }
+        let general = Journal {
+            provenance,
+            inputs: Vec::new(),
+            artifacts: Vec::new(),
+            rows: Vec::new(),
+            resumed: Vec::new(),
+            end: Some(end),
+            truncated: None,
+            length: 0,
+        };
+        // Sources of ray tracing read typed rows: tests fill these
+        let journal = TraceJournal::new(&general);
+        Builder { run: RecordedRun { journal, general, folder: "nowhere".into() }, noise: 0.0 }
     }
 
     pub fn device(mut self, name: &str, kind: DeviceType) -> Builder {

@@ -1,5 +1,7 @@
-//! The sphere tracer.
+//! The sphere tracer: scenes and views, pictures of all renderers, their work, closed forms.
 
 mod device; // the kernels' bits, work and layouts
 mod orbit; // views over an orbit
+mod pictures; // every CPU renderer makes the reference's bits
 mod scenes; // scene files, their schema, names, the generator, mutations
+mod support; // scenes by hand, views in double precision

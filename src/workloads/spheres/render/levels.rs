@@ -9,9 +9,6 @@ use fearless_simd::Neon;
 #[cfg(target_arch = "x86_64")]
 use fearless_simd::{Avx2, Avx512, Sse2};
 
-/// All, the least first.
-const ALL: [Level; 4] = [Level::Sse2, Level::Avx2, Level::Avx512, Level::Neon];
-
 /// The proof that this processor has a level.
 #[derive(Clone, Copy)]
 pub(super) enum Token {
@@ -71,22 +68,12 @@ impl Token {
 
 /// The levels of this processor, the least first.
 pub fn levels() -> Vec<Level> {
-    ALL.into_iter().filter(|&level| Token::of(level).is_some()).collect()
+    Level::ALL.iter().map(|(_, level)| *level).filter(|&level| Token::of(level).is_some()).collect()
 }
 
 /// The best one; none on a processor without any of them.
 pub fn best_level() -> Option<Level> {
     levels().pop()
-}
-
-/// As options and tables name it.
-pub fn name(level: Level) -> &'static str {
-    match level {
-        Level::Sse2 => "sse2",
-        Level::Avx2 => "avx2",
-        Level::Avx512 => "avx512",
-        Level::Neon => "neon",
-    }
 }
 
 /// The proof for a level, or for the best one.
@@ -95,9 +82,9 @@ pub fn name(level: Level) -> &'static str {
 /// Refused if this processor lacks it; the message names the level and those that there are.
 pub(super) fn token(level: Option<Level>) -> Result<Token> {
     level.or_else(best_level).and_then(Token::of).ok_or_else(|| {
-        let present: Vec<&str> = levels().into_iter().map(name).collect();
+        let present: Vec<&str> = levels().into_iter().map(Level::name).collect();
         let present = if present.is_empty() { "none".to_owned() } else { present.join(", ") };
-        let wanted = level.map_or("any", name);
+        let wanted = level.map_or("any", Level::name);
         let untested = if level == Some(Level::Neon) { "; this level is untested" } else { "" };
         Error::unsupported(format!("level {wanted}: this {} processor has {present}{untested}", std::env::consts::ARCH))
     })

@@ -82,7 +82,7 @@ impl<'p> CpuRenderer<'p> {
     /// level of SIMD, `avx512`.
     pub fn instructions(&self) -> String {
         match self.vectors {
-            Some((_, token)) => levels::name(token.level()).to_owned(),
+            Some((_, token)) => token.level().name().to_owned(),
             None => levels::compiled(),
         }
     }
