@@ -2,13 +2,13 @@
 
 use crate::support::gpu;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use rtbench::device::VulkanDevice;
+use rtbench::device::{Feature, VulkanDevice};
 use rtbench::workloads::size::Size;
 use rtbench::workloads::spheres::gpu::kernels::{Kernel, MAX_UNIFORM_SPHERES};
 use rtbench::workloads::spheres::gpu::{GpuRenderer, kernels};
-use rtbench::workloads::spheres::options::{Algorithm, HitRecord, Options};
-use rtbench::workloads::spheres::render::compare::{compare, largest_difference};
-use rtbench::workloads::spheres::render::reference;
+use rtbench::workloads::spheres::options::{Algorithm, HitRecord, Options, Precision};
+use rtbench::workloads::spheres::render::compare::{compare, largest_difference, rmse};
+use rtbench::workloads::spheres::render::{half, reference};
 use rtbench::workloads::spheres::scene::Scene;
 use rtbench::workloads::spheres::view::View;
 
@@ -27,7 +27,8 @@ fn check(gpu: &VulkanDevice, scene: &Scene, (width, height): (u32, u32), trips: 
     for algorithm in ALGORITHMS {
         let expected = reference::render(&spheres, &view, algorithm);
         for exits in [false, true] {
-            let renderer = GpuRenderer::new(gpu, &spheres, options(algorithm, exits), size, trips).unwrap();
+            let renderer =
+                GpuRenderer::new(gpu, &spheres, options(algorithm, exits), size, trips, Precision::F32).unwrap();
             let what = format!("{} {width}x{height} {algorithm:?} {exits}", scene.name);
             let image = renderer.render(&view).unwrap();
             let (counted, hits) = renderer.count(&view).unwrap();
@@ -65,7 +66,8 @@ fn many_spheres_are_in_a_storage_buffer() {
         let scene = Scene::load(&format!("random:spheres={spheres},seed=3")).unwrap();
         check(gpu, &scene, (32, 18), 3);
         let size = Size { width: 8, height: 8 };
-        let renderer = GpuRenderer::new(gpu, &scene.packed(), options(Algorithm::OnePass, true), size, 3).unwrap();
+        let renderer =
+            GpuRenderer::new(gpu, &scene.packed(), options(Algorithm::OnePass, true), size, 3, Precision::F32).unwrap();
         let uploaded = if spheres <= room { room } else { spheres };
         assert_eq!(renderer.allocated(), 32 * uploaded + 64 * 16);
     }
@@ -83,7 +85,8 @@ fn one_wrong_sphere_is_found_and_the_pixel_is_named() {
         let mut spheres = scene.packed();
         spheres[wrong].radius2 *= 1.01;
         let expected = reference::render(&spheres, &view, Algorithm::OnePass).image;
-        let renderer = GpuRenderer::new(gpu, &spheres, options(Algorithm::OnePass, true), size, 5).unwrap();
+        let renderer =
+            GpuRenderer::new(gpu, &spheres, options(Algorithm::OnePass, true), size, 5, Precision::F32).unwrap();
         let image = renderer.render(&view).unwrap();
         let place = |difference: Option<rtbench::workloads::spheres::render::compare::FirstDifference>| {
             difference.map(|difference| (difference.x, difference.y, difference.count))
@@ -103,7 +106,8 @@ fn frames_are_timed_and_the_last_one_stays() {
     let scene = Scene::load("default").unwrap();
     let size = Size { width: 40, height: 22 };
     let views: Vec<View> = (0..5).map(|frame| View::of(&scene, size, 5, frame, 5)).collect();
-    let renderer = GpuRenderer::new(gpu, &scene.packed(), options(Algorithm::OnePass, true), size, 5).unwrap();
+    let renderer =
+        GpuRenderer::new(gpu, &scene.packed(), options(Algorithm::OnePass, true), size, 5, Precision::F32).unwrap();
     let times = renderer.time(&views, &|| false).unwrap();
     assert_eq!(times.len(), 5);
     assert!(times.iter().all(|time| time.wall_ns > 0 && time.stages.len() <= 1));
@@ -123,7 +127,8 @@ fn images_that_a_device_cannot_bind_are_refused() {
     let Some(gpu) = gpu() else { return };
     let size = Size { width: 1 << 20, height: 1 << 20 };
     let spheres = Scene::load("default").unwrap().packed();
-    let error = GpuRenderer::new(gpu, &spheres, options(Algorithm::OnePass, true), size, 5).err().unwrap();
+    let error =
+        GpuRenderer::new(gpu, &spheres, options(Algorithm::OnePass, true), size, 5, Precision::F32).err().unwrap();
     assert!(error.to_string().starts_with("too large: the image: 16777216 MiB are needed"), "{error}");
 }
 
@@ -135,10 +140,10 @@ fn module(kernel: &Kernel) -> naga::Module {
 #[test]
 fn every_kernel_is_valid_and_has_its_own_text() {
     let all = kernels().unwrap();
-    assert_eq!(all.len(), 16);
+    assert_eq!(all.len(), 20);
     for (name, source) in &all {
         let module = naga::front::wgsl::parse_str(&source.text).unwrap_or_else(|error| panic!("{name}: {error}"));
-        Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module).unwrap();
+        Validator::new(ValidationFlags::all(), Capabilities::SHADER_FLOAT16).validate(&module).unwrap();
         assert!(!source.text.contains("dot("), "{name}: the order of its sum is the driver's choice");
         assert_eq!(all.iter().filter(|(_, other)| other.hash() == source.hash()).count(), 1, "{name}");
     }
@@ -147,6 +152,7 @@ fn every_kernel_is_valid_and_has_its_own_text() {
         exit_on_miss: true,
         trips: 5,
         uniform_spheres: Some(2048),
+        precision: Precision::F32,
         counting: false,
     };
     let other = Kernel { uniform_spheres: Some(512), ..kernel };
@@ -170,10 +176,20 @@ macro_rules! same_layout {
 
 #[test]
 fn struct_layouts_agree() {
-    use rtbench::workloads::spheres::{gpu::BandUniform, scene::PackedSphere};
+    use rtbench::workloads::spheres::{
+        gpu::{BandUniform, HalfSphere},
+        scene::PackedSphere,
+    };
     for uniform_spheres in [None, Some(2048)] {
         let algorithm = Algorithm::TwoPass;
-        let module = &module(&Kernel { algorithm, exit_on_miss: false, trips: 5, uniform_spheres, counting: true });
+        let module = &module(&Kernel {
+            algorithm,
+            exit_on_miss: false,
+            trips: 5,
+            uniform_spheres,
+            precision: Precision::F32,
+            counting: true,
+        });
         same_layout!(
             module,
             "View",
@@ -201,5 +217,38 @@ fn struct_layouts_agree() {
         );
         same_layout!(module, "Band", BandUniform, [view, first_column, first_row, columns, rows]);
         same_layout!(module, "Sphere", PackedSphere, [center, radius2, color, pad]);
+        let kernel = Kernel {
+            algorithm,
+            exit_on_miss: true,
+            trips: 5,
+            uniform_spheres,
+            precision: Precision::F16,
+            counting: true,
+        };
+        same_layout!(&self::module(&kernel), "Sphere", HalfSphere, [center, radius2, color, pad]);
+    }
+}
+
+#[test]
+fn half_precision_is_rendered_where_the_device_has_it() {
+    let Some(gpu) = gpu() else { return };
+    let size = Size { width: 48, height: 27 };
+    for name in ["default", "random20"] {
+        let scene = Scene::load(name).unwrap();
+        let (view, spheres) = (View::of(&scene, size, 5, 0, 1), scene.packed());
+        for algorithm in ALGORITHMS {
+            let renderer = GpuRenderer::new(gpu, &spheres, options(algorithm, true), size, 5, Precision::F16);
+            if !gpu.features().has(Feature::Half) {
+                let error = renderer.err().unwrap().to_string();
+                assert_eq!(error, "unsupported: half precision, which this device has not");
+                continue;
+            }
+            let image = renderer.unwrap().render(&view).unwrap();
+            let emulated = half::render(&spheres, &view, algorithm);
+            let single = reference::render(&spheres, &view, algorithm).image;
+            let (own, other) = (rmse(&image, &emulated), rmse(&image, &single));
+            eprintln!("{name} {algorithm:?}: {own} from the emulated picture, {other} from single precision");
+            assert!(own <= 0.05 && other > 0.001, "{own} {other}");
+        }
     }
 }
