@@ -11,7 +11,7 @@ use crate::harness::workload::Workload;
 use std::collections::BTreeMap;
 
 /// All workloads, in the order of help.
-pub static ALL: &[&dyn Workload] = &[&trace::TRACE];
+pub static ALL: &[&dyn Workload] = &[&trace::TRACE, &spheres::SPHERES];
 
 /// A workload by its name.
 pub fn find(name: &str) -> Option<&'static dyn Workload> {
