@@ -6,7 +6,7 @@ fn follow(first: Ray) -> Path {
     var ray = first;
     var hit = no_hit();
     var path = Path(real3(0.0), 0u);
-    var share = real3(band.view.one);
+    var share = real3(real(band.view.one));
     var live = true;
     for (var trip = 0u; trip < TRIPS; trip += 1u) {
         let found = search(ray, &hit);

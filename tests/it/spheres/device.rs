@@ -27,8 +27,7 @@ fn check(gpu: &VulkanDevice, scene: &Scene, (width, height): (u32, u32), trips: 
     for algorithm in ALGORITHMS {
         let expected = reference::render(&spheres, &view, algorithm);
         for exits in [false, true] {
-            let renderer =
-                GpuRenderer::new(gpu, &spheres, options(algorithm, exits), size, trips, Precision::F32).unwrap();
+            let renderer = GpuRenderer::new(gpu, &spheres, options(algorithm, exits), size, trips).unwrap();
             let what = format!("{} {width}x{height} {algorithm:?} {exits}", scene.name);
             let image = renderer.render(&view).unwrap();
             let (counted, hits) = renderer.count(&view).unwrap();
@@ -66,8 +65,7 @@ fn many_spheres_are_in_a_storage_buffer() {
         let scene = Scene::load(&format!("random:spheres={spheres},seed=3")).unwrap();
         check(gpu, &scene, (32, 18), 3);
         let size = Size { width: 8, height: 8 };
-        let renderer =
-            GpuRenderer::new(gpu, &scene.packed(), options(Algorithm::OnePass, true), size, 3, Precision::F32).unwrap();
+        let renderer = GpuRenderer::new(gpu, &scene.packed(), options(Algorithm::OnePass, true), size, 3).unwrap();
         let uploaded = if spheres <= room { room } else { spheres };
         assert_eq!(renderer.allocated(), 32 * uploaded + 64 * 16);
     }
@@ -85,8 +83,7 @@ fn one_wrong_sphere_is_found_and_the_pixel_is_named() {
         let mut spheres = scene.packed();
         spheres[wrong].radius2 *= 1.01;
         let expected = reference::render(&spheres, &view, Algorithm::OnePass).image;
-        let renderer =
-            GpuRenderer::new(gpu, &spheres, options(Algorithm::OnePass, true), size, 5, Precision::F32).unwrap();
+        let renderer = GpuRenderer::new(gpu, &spheres, options(Algorithm::OnePass, true), size, 5).unwrap();
         let image = renderer.render(&view).unwrap();
         let place = |difference: Option<rtbench::workloads::spheres::render::compare::FirstDifference>| {
             difference.map(|difference| (difference.x, difference.y, difference.count))
@@ -106,8 +103,7 @@ fn frames_are_timed_and_the_last_one_stays() {
     let scene = Scene::load("default").unwrap();
     let size = Size { width: 40, height: 22 };
     let views: Vec<View> = (0..5).map(|frame| View::of(&scene, size, 5, frame, 5)).collect();
-    let renderer =
-        GpuRenderer::new(gpu, &scene.packed(), options(Algorithm::OnePass, true), size, 5, Precision::F32).unwrap();
+    let renderer = GpuRenderer::new(gpu, &scene.packed(), options(Algorithm::OnePass, true), size, 5).unwrap();
     let times = renderer.time(&views, &|| false).unwrap();
     assert_eq!(times.len(), 5);
     assert!(times.iter().all(|time| time.wall_ns > 0 && time.stages.len() <= 1));
@@ -127,8 +123,7 @@ fn images_that_a_device_cannot_bind_are_refused() {
     let Some(gpu) = gpu() else { return };
     let size = Size { width: 1 << 20, height: 1 << 20 };
     let spheres = Scene::load("default").unwrap().packed();
-    let error =
-        GpuRenderer::new(gpu, &spheres, options(Algorithm::OnePass, true), size, 5, Precision::F32).err().unwrap();
+    let error = GpuRenderer::new(gpu, &spheres, options(Algorithm::OnePass, true), size, 5).err().unwrap();
     assert!(error.to_string().starts_with("too large: the image: 16777216 MiB are needed"), "{error}");
 }
 
@@ -237,7 +232,7 @@ fn half_precision_is_rendered_where_the_device_has_it() {
         let scene = Scene::load(name).unwrap();
         let (view, spheres) = (View::of(&scene, size, 5, 0, 1), scene.packed());
         for algorithm in ALGORITHMS {
-            let renderer = GpuRenderer::new(gpu, &spheres, options(algorithm, true), size, 5, Precision::F16);
+            let renderer = GpuRenderer::in_precision(Precision::F16, gpu, &spheres, options(algorithm, true), size, 5);
             if !gpu.features().has(Feature::Half) {
                 let error = renderer.err().unwrap().to_string();
                 assert_eq!(error, "unsupported: half precision, which this device has not");

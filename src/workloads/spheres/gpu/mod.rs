@@ -42,19 +42,33 @@ pub struct GpuRenderer<'d> {
 }
 
 impl<'d> GpuRenderer<'d> {
-    /// Uploads spheres and compiles the timed kernel for views of this size with at most `trips` rays along a path.
-    /// Spheres are in a uniform buffer if the device's limit allows it.
+    /// Like [`GpuRenderer::in_precision`], in single precision.
     ///
     /// # Errors
-    /// [`Error::Refused`] for an image or a scene that the device cannot bind and for half precision that it has not,
-    /// and the device's errors.
+    /// The same.
     pub fn new(
         device: &'d VulkanDevice,
         spheres: &[PackedSphere],
         options: Options,
         size: Size,
         trips: u32,
+    ) -> Result<GpuRenderer<'d>> {
+        GpuRenderer::in_precision(Precision::F32, device, spheres, options, size, trips)
+    }
+
+    /// Uploads spheres and compiles the timed kernel for views of this size with at most `trips` rays along a path.
+    /// Spheres are in a uniform buffer if the device's limit allows it.
+    ///
+    /// # Errors
+    /// [`Error::Refused`] for an image or a scene that the device cannot bind and for half precision that it has not,
+    /// and the device's errors.
+    pub fn in_precision(
         precision: Precision,
+        device: &'d VulkanDevice,
+        spheres: &[PackedSphere],
+        options: Options,
+        size: Size,
+        trips: u32,
     ) -> Result<GpuRenderer<'d>> {
         if precision == Precision::F16 && !device.features().has(Feature::Half) {
             return Err(Error::unsupported("half precision, which this device has not"));
