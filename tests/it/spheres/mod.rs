@@ -2,8 +2,11 @@
 
 mod checks; // comparisons of pictures, fed with wrong ones
 mod device; // the kernels' bits, work and layouts
+mod closed; // pictures of which a formula says what is to be seen
+mod lanes; // a broken lane is found
 mod orbit; // views over an orbit
 mod pictures; // every CPU renderer makes the reference's bits
 mod scenes; // scene files, their schema, names, the generator, mutations
 mod support; // scenes by hand, views in double precision
 mod workload; // what is typed, planned, refused and found wrong
+mod work; // counters: the same rays and hits from everybody, exits taken
