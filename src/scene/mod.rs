@@ -5,7 +5,7 @@
 //! module and a line in [`FORMATS`].
 
 mod aff;
-mod budget;
+pub(crate) mod budget;
 pub mod cache;
 pub mod catalogue;
 mod extent;

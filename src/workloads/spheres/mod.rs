@@ -6,8 +6,21 @@
 
 pub mod case;
 pub mod count;
+pub mod gpu;
+mod half;
+mod input;
+mod memory;
 pub mod options;
+pub mod pictures;
+mod references;
 pub mod render;
 pub mod renderer;
+mod run;
 pub mod scene;
+pub mod verify;
 pub mod view;
+pub mod work;
+mod workload;
+
+pub use input::SpheresInput;
+pub use workload::{SPHERES, Spheres, WORKLOAD};

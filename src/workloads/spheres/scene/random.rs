@@ -9,8 +9,14 @@ use glam::{DVec3, Vec3};
 /// The name before the options.
 pub const NAME: &str = "random";
 
-/// The diagonal of the cube that holds all spheres, whatever their number is: more spheres are smaller.
-const DIAGONAL: f64 = 20.0;
+/// Radius and half height of the cylinder that holds all spheres, whatever their number is: more spheres are smaller.
+/// The diagonal of its box is 20.
+const RADIUS: f64 = 6.6;
+const HALF_HEIGHT: f64 = 3.6;
+
+/// The radii at first, in units of the side of the cube that a sphere has on average.
+const SMALLEST: f64 = 0.24;
+const LARGEST: f64 = 0.55;
 
 /// SplitMix64, by Steele, Lea and Flood (2014).
 struct Random(u64);
@@ -80,29 +86,70 @@ fn rounded(x: f64) -> f64 {
     (x * 1e4).round() / 1e4
 }
 
-/// Spheres in different cells of a lattice of at least twice as many cells, none of which leaves its cell.
+/// The spheres placed so far, by the cubic cell of their centres, so that few are compared.
+struct Placed {
+    cell: f64,
+    side: usize,
+    cells: Vec<Vec<u32>>,
+    spheres: Vec<([f64; 3], f64)>,
+}
+
+impl Placed {
+    /// `cell` is at least twice the largest radius.
+    fn new(cell: f64) -> Placed {
+        let side = (2.0 * RADIUS / cell) as usize + 1;
+        Placed { cell, side, cells: vec![Vec::new(); side * side * side], spheres: Vec::new() }
+    }
+
+    fn coordinates(&self, place: [f64; 3]) -> [usize; 3] {
+        place.map(|x| (((x + RADIUS) / self.cell) as usize).min(self.side - 1))
+    }
+
+    /// Adds a sphere unless it meets another one.
+    fn add(&mut self, place: [f64; 3], radius: f64) -> bool {
+        let [x, y, z] = self.coordinates(place);
+        let near = |c: usize| c.saturating_sub(1)..=(c + 1).min(self.side - 1);
+        let index = |x: usize, y: usize, z: usize| (x * self.side + y) * self.side + z;
+        let cells = near(x).flat_map(|x| near(y).flat_map(move |y| near(z).map(move |z| (x, y, z))));
+        let meets = |&other: &u32| {
+            let (center, other) = self.spheres[other as usize];
+            let [x, y, z] = [0, 1, 2].map(|axis| center[axis] - place[axis]);
+            x * x + y * y + z * z < (radius + other) * (radius + other)
+        };
+        if cells.into_iter().any(|(x, y, z)| self.cells[index(x, y, z)].iter().any(meets)) {
+            return false;
+        }
+        let cell = index(x, y, z);
+        self.cells[cell].push(self.spheres.len() as u32);
+        self.spheres.push((place, radius));
+        true
+    }
+}
+
+/// Spheres at random places of an upright cylinder, none of which meets another one: those that find no place become
+/// smaller.
 fn generate(count: usize, seed: u64) -> Scene {
     let mut random = Random(seed);
-    let side = (1..).find(|n| n * n * n >= 2 * count).unwrap_or(1);
-    let size = DIAGONAL / 3_f64.sqrt() / side as f64;
-    let mut cells: Vec<u32> = (0..(side * side * side) as u32).collect();
+    let size = libm::cbrt(4.0 * RADIUS * RADIUS * 2.0 * HALF_HEIGHT / count as f64).min(5.5);
+    let mut placed = Placed::new(LARGEST * size * 2.0 + 0.001);
     let mut spheres = Vec::with_capacity(count);
-    for index in 0..count {
-        let other = index + random.below(cells.len() - index);
-        cells.swap(index, other);
-        let cell = cells[index] as usize;
-        let radius = size * random.between(0.26, 0.48);
-        let mut along = |cell: usize| {
-            let free = 0.5 * size - radius;
-            rounded((cell as f64 + 0.5 - 0.5 * side as f64) * size + random.between(-free, free)) as f32
+    for _ in 0..count {
+        let mut radius = rounded(size * random.between(SMALLEST, LARGEST));
+        let place = loop {
+            let [x, z] = [0, 1].map(|_| rounded(random.between(radius - RADIUS, RADIUS - radius)));
+            let y = rounded(random.between(radius - HALF_HEIGHT, HALF_HEIGHT - radius));
+            let inside = x * x + z * z <= (RADIUS - radius) * (RADIUS - radius);
+            if inside && placed.add([x, y, z], radius) {
+                break Vec3::new(x as f32, y as f32, z as f32);
+            }
+            radius = rounded((radius * 0.99).max(0.0001));
         };
-        let position = Vec3::new(along(cell % side), along(cell / side % side), along(cell / side / side));
-        spheres.push(Sphere { position, radius: rounded(radius) as f32, color: colour(&mut random) });
+        spheres.push(Sphere { position: place, radius: radius as f32, color: colour(&mut random) });
     }
     let camera = Camera {
-        position: DVec3::new(0.0, 5.0, 20.0),
+        position: DVec3::new(0.0, 4.5, 18.0),
         forward: DVec3::new(0.0, -0.25, -1.0),
-        fov: 40.0,
+        fov: 32.0,
         focus_point: DVec3::ZERO,
         orbit_velocity: 0.5,
     };
