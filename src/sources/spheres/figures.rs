@@ -80,8 +80,11 @@ fn drawn(id: &'static str, name: String, caption: &str, label: &str, picture: Pi
     Figure::draw(id, name, format!("{caption} ({label})."), &picture).map(Some)
 }
 
-/// Bars in groups, with no whiskers where the values have none.
-fn bars(groups: &[String], bars: Vec<Vec<Option<(Bar, usize)>>>) -> (Vec<Bar>, Vec<String>) {
+/// Bars by group, each with its index in the group.
+type Groups = Vec<Vec<Option<(Bar, usize)>>>;
+
+/// Places bars in their groups.
+fn bars(groups: &[String], bars: Groups) -> (Vec<Bar>, Vec<String>) {
     let mut placed = Vec::new();
     for (group, of_group) in bars.into_iter().enumerate() {
         let width = 0.84 / of_group.len().max(1) as f64;
@@ -154,7 +157,7 @@ fn speed_ups(view: &View, printed: &View, label: &str, end: &str) -> Result<Opti
         (Renderer::SimdThreads, Stage::Exits),
     ];
     let mut all: Vec<f64> = Vec::new();
-    let mut of_role: Vec<(Role, Vec<Vec<Option<(Bar, usize)>>>)> = Vec::new();
+    let mut of_role: Vec<(Role, Groups)> = Vec::new();
     for role in Role::PAPER {
         let sides = [(view, "measured", 0), (printed, "printed", 6)];
         let of = |(renderer, stage): (Renderer, Stage)| {
@@ -164,7 +167,7 @@ fn speed_ups(view: &View, printed: &View, label: &str, end: &str) -> Result<Opti
             };
             sides.into_iter().enumerate().map(bar).collect::<Vec<_>>()
         };
-        let groups: Vec<Vec<Option<(Bar, usize)>>> = shown.into_iter().map(of).collect();
+        let groups: Groups = shown.into_iter().map(of).collect();
         if groups.iter().any(|group| group[0].is_some()) {
             all.extend(groups.iter().flatten().flatten().map(|(bar, _)| bar.mean));
             of_role.push((role, groups));

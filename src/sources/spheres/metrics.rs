@@ -20,13 +20,13 @@ pub fn karp_flatt_as_printed(speed_up: f64, processors: f64) -> Option<f64> {
     (speed_up > 0.0 && processors > 1.0 && e.is_finite()).then_some(e)
 }
 
-/// What a reader should know about a value outside of 0 to 1; empty for one inside.
+/// Why there is no metric, or why it is outside of 0 to 1; empty otherwise. A note below the table explains the words.
 pub fn remark(speed_up: f64, processors: Option<f64>) -> &'static str {
     match processors {
-        None => "no e: the number of processors is not known",
-        Some(p) if p <= 1.0 => "no e: one processor",
-        Some(p) if speed_up > p => "e < 0: faster than so many processors",
-        Some(_) if speed_up < 1.0 => "e > 1: slower than sequential",
+        None => "p unknown",
+        Some(p) if p <= 1.0 => "p = 1",
+        Some(p) if speed_up > p => "S > p",
+        Some(_) if speed_up < 1.0 => "S < 1",
         Some(_) => "",
     }
 }

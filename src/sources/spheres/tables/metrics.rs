@@ -104,6 +104,11 @@ pub fn table(context: &Context, side: &Side) -> Table {
          1/p), Karp and Flatt: the serial share of p equal processors, which lanes, slow cores and a GPU's units are not."
             .to_owned(),
     ];
+    notes.push(
+        "Remarks: a single processor (p = 1) has no e; slower than sequential (S < 1) is an e above 1, faster than so \
+         many processors (S > p) one below 0."
+            .into(),
+    );
     if shows_published {
         notes.push(
             "No printed e follows from this formula: 0.680, 0.0023, 0.206 and 0.0020 would be 0.615, 0.00037, 0.141 and \
