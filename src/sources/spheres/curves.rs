@@ -1,8 +1,8 @@
-//! Rows that differ in one number alone: of threads, or of lanes.
+//! Rows that differ in one number alone: of threads, of lanes, or of spheres.
 
 use super::data::{Measurement, View};
 use super::scenes::SceneKey;
-use super::setting::{Algorithm, Renderer, Setting};
+use super::setting::{Algorithm, Hit, Renderer, Setting};
 
 /// Rows of a scene by a number, ascending.
 #[derive(Clone, Debug)]
@@ -38,6 +38,39 @@ pub fn by_threads<'a>(view: &View<'a>) -> Vec<Curve<'a>> {
     curves(view, |m| Some((m.threads?, Setting { threads: None, ..m.setting.clone() })))
 }
 
+/// A renderer's rows of one setting over scenes, ascending by the number of spheres, each number once.
+#[derive(Clone, Debug)]
+pub struct OverScenes<'a> {
+    /// The setting.
+    pub setting: Setting,
+    /// The rows.
+    pub points: Vec<(SceneKey, &'a Measurement)>,
+}
+
+/// By number of spheres: of each renderer the setting that was measured on most scenes, of equals the fastest.
+pub fn by_spheres<'a>(view: &View<'a>) -> Vec<OverScenes<'a>> {
+    let mut found: Vec<OverScenes> = Vec::new();
+    for row in view.rows().filter(|m| !m.setting.half && view.has_all_threads(m)) {
+        let point = (row.scene.clone(), row);
+        match found.iter_mut().find(|of| of.setting == row.setting) {
+            Some(of) => of.points.push(point),
+            None => found.push(OverScenes { setting: row.setting.clone(), points: vec![point] }),
+        }
+    }
+    for of in &mut found {
+        of.points.sort_by_key(|(scene, _)| scene.spheres);
+        of.points.dedup_by_key(|(scene, _)| scene.spheres);
+    }
+    let best = |renderer: Renderer| {
+        let of_renderer = found.iter().filter(|of| of.setting.renderer == renderer);
+        of_renderer.max_by(|a, b| {
+            let total = |of: &OverScenes| of.points.iter().map(|(_, m)| m.mean_ms).sum::<f64>();
+            a.points.len().cmp(&b.points.len()).then(total(b).total_cmp(&total(a)))
+        })
+    };
+    Renderer::ALL.into_iter().filter_map(best).cloned().collect()
+}
+
 /// By number of lanes, with all threads.
 pub fn by_lanes<'a>(view: &View<'a>) -> Vec<Curve<'a>> {
     let of = |m: &Measurement| {
@@ -69,6 +102,15 @@ impl<'a> Curve<'a> {
     pub fn words(&self) -> String {
         let words = self.setting.switches();
         words.strip_prefix("0 lanes, ").unwrap_or(&words).to_owned()
+    }
+
+    /// What tells curves of one renderer apart, in few words.
+    pub fn label(&self) -> String {
+        let s = &self.setting;
+        let level = if s.level.is_empty() { "best level" } else { &s.level };
+        let hit = if s.hit == Some(Hit::InLoop) { "in the loop" } else { "index" };
+        let words = if s.renderer.has_lanes() { format!("{level}, {hit}") } else { hit.to_owned() };
+        format!("{}, {words}", s.renderer.title())
     }
 
     /// True for the fastest kind of curve: one pass, all exits of the renderer.

@@ -1,14 +1,13 @@
 //! Figures: times of every version, how they scale over threads, lanes and spheres, and speed-ups next to the printed
 //! ones.
 
-use super::curves::{Curve, by_lanes, by_threads};
+use super::curves::{Curve, OverScenes, by_lanes, by_spheres, by_threads};
 use super::data::{Data, Place, Terms, View};
 use super::published::Published;
 use super::scenes::{Role, SceneKey};
 use super::setting::{Renderer, Stage};
 use crate::error::Result;
 use crate::report::figure::{Axis, Bar, Figure, Missing, Panel, Picture, STYLES, Series, spreads};
-use crate::report::html::capital;
 
 /// What the figures need.
 const NEEDS: [(&str, &str, &str); 5] = [
@@ -16,7 +15,7 @@ const NEEDS: [(&str, &str, &str); 5] = [
     ("speed-up", "speed-ups next to the printed ones", "rows of the paper's structure and of sequential on its scenes"),
     ("threads", "speed-up over threads", "threads or simd-threads with at least two numbers of threads"),
     ("lanes", "speed-up over lanes", "simd or simd-threads with at least two numbers of lanes, and sequential"),
-    ("spheres", "times over the number of spheres", "the last version on at least three scenes"),
+    ("spheres", "times over the number of spheres", "a renderer with one setting on at least three scenes"),
 ];
 
 /// All figures that there is data for, and the others. Without runs: those of the printed times.
@@ -213,11 +212,7 @@ fn curves(found: &[Curve], gain: impl Fn(&Curve, f64) -> Option<f64>, axis: (&st
                 |(number, m): &(usize, &super::data::Measurement)| Some((*number as f64, gain(curve, m.mean_ms)?));
             let points: Vec<(f64, f64)> = curve.points.iter().filter_map(point).collect();
             let alone = of_scene.iter().filter(|c| c.setting.renderer == curve.setting.renderer).count() == 1;
-            let label = if alone {
-                curve.setting.renderer.title().to_owned()
-            } else {
-                format!("{}: {}", curve.setting.renderer.title(), curve.words())
-            };
+            let label = if alone { curve.setting.renderer.title().to_owned() } else { curve.label() };
             let style = if alone { colour(curve.setting.renderer) } else { index % STYLES };
             if points.len() > 1 {
                 series.push(Series { label, style, faint: false, points, ringed: None });
@@ -259,23 +254,23 @@ fn scaled(id: &'static str, what: &str, panels: Vec<Panel>, label: &str, end: &s
     drawn(id, format!("{id}{end}"), what, label, Picture { title: format!("{what}, {label}"), panels, columns })
 }
 
-/// Times of the last version over the number of spheres.
+/// Times over the number of spheres.
 fn over_spheres(view: &View, label: &str, end: &str) -> Result<Option<Figure>> {
-    let mut scenes = view.scenes();
-    scenes.sort_by_key(|scene| scene.spheres);
-    scenes.dedup_by_key(|scene| scene.spheres);
-    let of = |renderer: Renderer| {
-        let point = |scene: &SceneKey| Some((scene.spheres as f64, view.stage(scene, renderer, Stage::Exits)?.mean_ms));
-        let points: Vec<(f64, f64)> = scenes.iter().filter_map(point).collect();
-        let label = renderer.title().to_owned();
-        (points.len() > 2).then(|| Series { label, style: colour(renderer), faint: false, points, ringed: None })
+    let line = |of: &OverScenes| {
+        let points: Vec<(f64, f64)> = of.points.iter().map(|(scene, m)| (scene.spheres as f64, m.mean_ms)).collect();
+        let renderer = of.setting.renderer;
+        let label = match renderer.has_lanes() {
+            true => format!("{}, {} lanes", renderer.title(), of.setting.lanes),
+            false => renderer.title().to_owned(),
+        };
+        (points.len() > 2).then_some(Series { label, style: colour(renderer), faint: false, points, ringed: None })
     };
-    let series: Vec<Series> = Renderer::ALL.into_iter().filter_map(of).collect();
+    let series: Vec<Series> = by_spheres(view).iter().filter_map(line).collect();
     if series.is_empty() {
         return Ok(None);
     }
-    let what = "Times of the last version over the number of spheres";
+    let what = "Times over the number of spheres";
     let panels = vec![line_panel("", ("spheres", "time per frame [ms]"), series)];
-    let picture = Picture { title: capital(&format!("{what}, {label}")), panels, columns: 1 };
+    let picture = Picture { title: format!("{what}, {label}"), panels, columns: 1 };
     drawn("spheres", format!("spheres{end}"), what, label, picture)
 }

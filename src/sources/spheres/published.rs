@@ -97,7 +97,8 @@ pub fn data() -> Published {
             min_ms: time.mean_ms.value,
             max_ms: time.mean_ms.value,
             places: time.mean_ms.places,
-            noise_pct: None,
+            // No noise is known, and none is added
+            noise_pct: Some(0.0),
             work: None,
             repeated: false,
         });

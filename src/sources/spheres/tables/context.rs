@@ -176,7 +176,7 @@ impl<'a> Side<'a> {
         let failed: Vec<String> = data
             .failures
             .iter()
-            .filter(|f| view.place.has(f.machine, f.device) && f.terms == view.terms)
+            .filter(|f| view.place.has(f.machine, f.device) && f.terms == view.terms && !f.setting.half)
             .map(|f| format!("{} {} ({})", f.scene, f.setting, f.message))
             .collect();
         if !failed.is_empty() {

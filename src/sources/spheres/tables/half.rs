@@ -51,6 +51,12 @@ pub fn table(context: &Context, side: &Side) -> Table {
     if side.is_published {
         notes.push("The paper says twice the speed and an unusable picture, and prints no numbers.".into());
     }
+    let place = side.view.place;
+    let failed = side.view.data.failures.iter().filter(|f| f.setting.half && place.has(f.machine, f.device));
+    let mut failed: Vec<String> = failed.map(|f| format!("{}: {}", f.setting.renderer.title(), f.message)).collect();
+    failed.sort_unstable();
+    failed.dedup();
+    notes.extend(failed.into_iter().map(|words| format!("{words}.")));
     let title = "Half precision".to_owned();
     let keys = &["scene", "renderer", "switches", "measured at"];
     let mut table = context.table(side, Draft { id: "half", title, keys, columns, rows, notes });

@@ -1,12 +1,11 @@
 //! Times and speed-ups over threads, lanes and numbers of spheres.
 
-use super::best::fastest;
 use super::context::{Context, Draft, Side, keys};
 use crate::report::{Cell, Column, Form, Row, Table};
-use crate::sources::spheres::curves::{Curve, by_lanes, by_threads};
+use crate::sources::spheres::curves::{Curve, OverScenes, by_lanes, by_spheres, by_threads};
 use crate::sources::spheres::data::Measurement;
 use crate::sources::spheres::scenes::{Role, SceneKey};
-use crate::sources::spheres::setting::{Renderer, Stage};
+use crate::sources::spheres::setting::Renderer;
 
 const ID: &str = "scaling";
 
@@ -80,31 +79,38 @@ fn draft(
 }
 
 fn over_spheres(context: &Context, side: &Side) -> Table {
-    let mut columns: Vec<Column> =
-        Renderer::ALL.iter().map(|r| Column::of("last version", r.title(), "ms", Form::Time)).collect();
-    let simd = [Renderer::Simd, Renderer::SimdThreads];
-    columns.extend(simd.iter().map(|r| Column::of("fastest", r.title(), "ms", Form::Time)));
-    columns.push(Column::of("sequential", "time", "ns/test", Form::Time));
+    let of_renderer = by_spheres(&side.view);
+    let printed = side.printed.map(|view| by_spheres(&view)).unwrap_or_default();
+    let at = |all: &[OverScenes], scene: &SceneKey, renderer: Renderer| {
+        let of = all.iter().find(|of| of.setting.renderer == renderer)?;
+        of.points.iter().find(|(s, _)| s == scene).map(|(_, m)| m.number())
+    };
+    let mut columns: Vec<Column> = Renderer::ALL.iter().map(|r| Column::new(r.title(), "ms", Form::Time)).collect();
+    columns.push(Column::new("sequential", "ns/test", Form::Time));
     let mut scenes = context.scenes(side);
     scenes.sort_by_key(|scene| scene.spheres);
     let row = |scene: SceneKey| {
-        let last = |r: &Renderer| {
-            side.cell(&scene, |view, scene| view.stage(scene, *r, Stage::Exits).map(Measurement::number))
-        };
-        let best = |r: &Renderer| {
-            Cell::number(fastest(&side.view, &scene, *r).filter(|_| !side.is_published).map(|m| m.mean_ms))
+        let cell = |renderer: &Renderer| {
+            let published = scene.is_of_paper().then(|| SceneKey::published(scene.role));
+            let published = published.and_then(|scene| at(&printed, &scene, *renderer));
+            Cell::Number { value: at(&of_renderer, &scene, *renderer), published }
         };
         let per_test = |m: &Measurement| {
             let tests = m.work.as_ref().map(|w| w.tests).filter(|tests| *tests > 0)?;
             Some(1e6 * m.mean_ms * m.terms.frames as f64 / tests as f64)
         };
-        let sequential = side.view.stage(&scene, Renderer::Sequential, Stage::Exits);
-        let mut cells: Vec<Cell> = Renderer::ALL.iter().map(last).collect();
-        cells.extend(simd.iter().map(best));
-        cells.push(Cell::number(sequential.and_then(per_test)));
+        let sequential = of_renderer.iter().find(|of| of.setting.renderer == Renderer::Sequential);
+        let sequential = sequential.and_then(|of| of.points.iter().find(|(s, _)| *s == scene));
+        let mut cells: Vec<Cell> = Renderer::ALL.iter().map(cell).collect();
+        cells.push(Cell::number(sequential.and_then(|(_, m)| per_test(m))));
         (scene.clone(), Row { keys: keys(&scene), cells })
     };
     let rows = scenes.into_iter().map(row).collect();
-    let notes = vec!["Last version: one-pass, all exits, in the paper's structure.".to_owned()];
+    let settings: Vec<String> = of_renderer.iter().map(|of| of.setting.to_string()).collect();
+    let mut notes =
+        vec!["Of each renderer the setting that was measured on most scenes, of equals the fastest.".into()];
+    if !settings.is_empty() {
+        notes.push(format!("{}.", settings.join("; ")));
+    }
     draft(context, side, ("Times over the number of spheres", &["scene", "spheres"]), columns, rows, notes)
 }

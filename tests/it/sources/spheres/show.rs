@@ -44,7 +44,7 @@ fn the_page_has_everything_of_a_run() {
     let folder = tempfile::tempdir().unwrap();
     let pictures = folder.path().join("pictures");
     std::fs::create_dir(&pictures).unwrap();
-    for name in ["default.png", "random20.png"] {
+    for name in ["default.png", "default-half.png", "random20.png"] {
         rtbench::record::picture::write_png(&pictures.join(name), 2, 1, &[255; 8]).unwrap();
     }
     let mut run = everything();
@@ -58,6 +58,7 @@ fn the_page_has_everything_of_a_run() {
         "Table switches",
         "What differs from the paper, and why",
         "<h3>default</h3>",
+        "alt=\"default, in half precision",
         "8 threads x 4 lanes",
         "device lost",
         "Measured here: avx2, x86_64 sse2",
@@ -66,7 +67,7 @@ fn the_page_has_everything_of_a_run() {
         assert!(html.contains(words), "{words}");
     }
     // A picture of a scene is no step map, which only a sweep renders
-    assert!(!html.contains("steps of bvh-stack") && html.matches("<img ").count() == 2);
+    assert!(!html.contains("steps of bvh-stack") && html.matches("<img ").count() == 3);
     assert!(!html.contains("NaN") && !html.contains(">inf"));
     assert!(page(&[]).contains("The term paper on spheres, as printed"));
     let mut evil = Builder::new();
