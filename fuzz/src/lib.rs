@@ -8,6 +8,8 @@
 use rtbench::Result;
 use rtbench::camera::CameraPath;
 use rtbench::scene::{self, FORMATS, Scene};
+use rtbench::workloads::size::Size;
+use rtbench::workloads::spheres;
 use rtbench::workloads::trace::Selection;
 use std::path::PathBuf;
 use std::sync::LazyLock;
@@ -76,5 +78,16 @@ pub fn camera_path(bytes: &[u8]) {
     let path = file("path.toml", bytes);
     if let Some(path) = read(bytes.len(), || CameraPath::load(&path)) {
         one_line(path.views(&ROOM, Some(8)));
+    }
+}
+
+/// Loads these bytes as a scene of spheres and computes views of it.
+pub fn spheres(bytes: &[u8]) {
+    let path = file("spheres.json", bytes);
+    if let Some(scene) = read(bytes.len(), || spheres::scene::Scene::load(&path)) {
+        for frame in 0..4 {
+            let view = spheres::view::View::of(&scene, Size { width: 3, height: 2 }, 5, frame, 4);
+            assert!(view.origin.is_finite() && view.corner.is_finite(), "{view:?}");
+        }
     }
 }

@@ -6,6 +6,7 @@ use crate::device::vulkan::{self, Selector, VulkanOptions};
 use crate::device::{CpuDevice, VulkanDevice};
 use crate::error::{Error, Result};
 use crate::harness::run::Opened;
+use crate::harness::workload::Devices;
 use crate::threads;
 use clap::{Args, ValueEnum};
 
@@ -88,6 +89,31 @@ impl DeviceArguments {
             // Only a free choice may fall back.
             Err(error) if free_choice => self.cpu(format!("{} cannot be used: {error}", adapter.info().name)),
             Err(error) => Err(error),
+        }
+    }
+
+    /// Opens the devices of a workload, in the order of their indices. The CPU alone where there is no Vulkan device and
+    /// none was asked for.
+    ///
+    /// # Errors
+    /// Those of [`DeviceArguments::open`].
+    pub fn open_all(&self, devices: Devices) -> Result<Vec<Opened>> {
+        let chosen = self.open()?;
+        let is_vulkan = matches!(chosen.device, Device::Vulkan(_));
+        match devices {
+            Devices::CpuAndVulkan if is_vulkan => Ok(vec![self.cpu("for what runs on the CPU".into())?, chosen]),
+            _ => Ok(vec![chosen]),
+        }
+    }
+
+    /// Opens a device again by its index in [`DeviceArguments::open_all`].
+    ///
+    /// # Errors
+    /// Those of [`DeviceArguments::open`].
+    pub fn open_again(&self, devices: Devices, index: usize) -> Result<Opened> {
+        match (devices, index) {
+            (Devices::CpuAndVulkan, 0) => self.cpu("for what runs on the CPU".into()),
+            _ => self.open(),
         }
     }
 

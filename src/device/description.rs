@@ -7,12 +7,12 @@ impl DeviceInfo {
     pub fn description(&self) -> String {
         let name = &self.name;
         match self.device_type {
-            DeviceType::CpuTwin => format!(
-                "{name}: the CPU twins of the kernels, no GPU was used; these times do not rank structures for a GPU"
-            ),
-            DeviceType::SoftwareRasteriser => format!(
-                "{name}: a software rasteriser, which computes on the CPU; these times do not rank structures for a GPU"
-            ),
+            DeviceType::CpuTwin => {
+                format!("{name}: code of this program on the CPU; these times rank nothing for a GPU")
+            }
+            DeviceType::SoftwareRasteriser => {
+                format!("{name}: a software rasteriser, which computes on the CPU; these times rank nothing for a GPU")
+            }
             DeviceType::IntegratedGpu => format!("{name}: a GPU that shares the CPU's memory"),
             DeviceType::DiscreteGpu => format!("{name}: a discrete GPU"),
             DeviceType::VirtualGpu => format!("{name}: a virtual GPU"),

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum DeviceType {
-    /// The CPU, running this crate's twins of the kernels.
+    /// The CPU itself: code of this program, such as the twins of kernels.
     CpuTwin,
     /// A Vulkan driver that computes on the CPU (lavapipe).
     SoftwareRasteriser,
@@ -26,7 +26,7 @@ impl DeviceType {
     /// The kind in words, for listings and tables.
     pub fn in_words(self) -> &'static str {
         match self {
-            DeviceType::CpuTwin => "CPU twins of the kernels",
+            DeviceType::CpuTwin => "CPU without a driver",
             DeviceType::SoftwareRasteriser => "software rasteriser",
             DeviceType::IntegratedGpu => "integrated GPU",
             DeviceType::DiscreteGpu => "discrete GPU",

@@ -1,9 +1,9 @@
-//! Pairs of cases in interleaved rounds on one device: both sides are prepared and verified, then every round times the
+//! Pairs of cases in interleaved rounds: both sides are prepared and verified, then every round times the
 //! first side, the second side and the first side again, in an order that reverses from round to round.
 
 use super::measure::{self, no_samples};
+use super::run::Opened;
 use super::workload::{Case, Context, Event, Input, Run, Workload};
-use crate::device::Device;
 use crate::error::{Error, Result};
 use crate::record::row::Samples;
 use crate::record::statistics::interleaved_order;
@@ -17,8 +17,8 @@ pub struct AbJob<'a> {
     pub workload: &'a dyn Workload,
     /// How they are measured.
     pub context: &'a Context<'a>,
-    /// Where.
-    pub device: &'a Device,
+    /// Where; cases refer to them by index.
+    pub devices: &'a [Opened],
     /// The first and the second side of each pair.
     pub pairs: &'a [(Case, Case)],
     /// Rounds of each pair.
@@ -101,7 +101,8 @@ fn pair(
     let cases = [a, b, a];
     let mut runs: Vec<Box<dyn Run + '_>> = Vec::new();
     for (name, (input, case)) in SIDES.iter().zip([(inputs[0], a), (inputs[1], b), (inputs[0], a)]) {
-        let mut run = input.prepare(job.device, case).map_err(|error| at(&format!("side {name}"), error))?;
+        let device = &job.devices[case.device.min(job.devices.len() - 1)].device;
+        let mut run = input.prepare(device, case).map_err(|error| at(&format!("side {name}"), error))?;
         let verdict = run.verify(case).map_err(|error| at(&format!("side {name}"), error))?;
         if let Some(problem) = verdict.problem {
             return Err(Error::Device(format!("side {name} is wrong: {problem}")));

@@ -28,6 +28,8 @@ pub struct Request {
     pub warmup: Option<usize>,
     /// Threads that build.
     pub threads: Option<usize>,
+    /// Most work of a case.
+    pub budget: Option<u64>,
     /// Where inputs are found.
     pub library: Library,
     /// The part that is measured; all where absent.
@@ -49,6 +51,8 @@ pub struct Plan {
     pub hash: String,
     /// How.
     pub settings: Settings,
+    /// Most work of a case; a case of more becomes a row `skipped`. Absent for no limit.
+    pub budget: Option<u64>,
     /// Where inputs are found.
     pub library: Library,
     /// What the preset names and this machine does not have.
@@ -117,8 +121,9 @@ impl Plan {
             Some(shard) => shard::select(&whole, shard)?,
             None => whole.clone(),
         };
+        let budget = request.budget.or(info.budget);
         let (shard, library, hash) = (request.shard, request.library.clone(), hash(info.name, &whole, settings));
-        Ok(Plan { preset: preset.name, cases, whole, shard, hash, notes, settings, library, absent })
+        Ok(Plan { preset: preset.name, cases, whole, shard, hash, notes, settings, budget, library, absent })
     }
 
     /// The inputs, each once, with their cases.
@@ -133,6 +138,15 @@ impl Plan {
             inputs[at].1.push(case.clone());
         }
         inputs
+    }
+
+    /// The cases for so many devices: those of a device that is not there go to the first one, which refuses them.
+    #[must_use]
+    pub fn on_devices(mut self, devices: usize) -> Plan {
+        for case in &mut self.cases {
+            case.device = if case.device < devices { case.device } else { 0 };
+        }
+        self
     }
 
     /// Work of all cases.
@@ -242,8 +256,10 @@ fn chosen(workload: &dyn Workload, preset: &Preset, request: &Request, absent: &
 fn merged(common: &Part, part: &Part, request: &Request) -> Part {
     let mut values = common.values.clone();
     values.extend(part.values.clone());
-    values.extend(request.values.iter().filter(|(_, v)| !v.is_empty()).map(|(k, v)| (k.clone(), v.clone())));
-    Part { values, frames: request.frames.or(part.frames).or(common.frames) }
+    let given = || request.values.iter().filter(|(_, values)| !values.is_empty());
+    values.extend(given().map(|(axis, values)| (axis.clone(), values.clone())));
+    let frames = request.frames.or(part.frames).or(common.frames);
+    Part { values, frames, given: given().map(|(axis, _)| axis.clone()).collect() }
 }
 
 /// Parses a list given as several arguments, comma lists, or both; each value once, in the given order. A comma inside

@@ -141,7 +141,7 @@ impl File<'_> {
             let texts: Vec<String> = texts.ok_or_else(|| self.wrong(self.line_of(&key, index), problem()))?;
             values.insert(key, texts);
         }
-        Ok(Part { values, frames })
+        Ok(Part { values, frames, ..Part::default() })
     }
 
     fn number(&self, key: &str, value: &Value, index: usize) -> Result<usize> {

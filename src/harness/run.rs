@@ -118,6 +118,7 @@ pub fn run(mut job: Job) -> Result<Outcome> {
         open: job.open,
         artifacts: job.previous.artifacts(),
         previous: job.previous,
+        budget: job.plan.budget,
         journal: &mut journal,
     };
     let ended = inputs.into_iter().try_for_each(|(_, cases)| runner.input(&cases, first.take()));
@@ -155,6 +156,8 @@ pub(super) struct Runner<'a, 'j> {
     infos: Vec<DeviceInfo>,
     open: &'a dyn Fn(usize) -> Result<Opened>,
     pub(super) previous: PreviousRun,
+    /// Most work of a case.
+    budget: Option<u64>,
     /// Keys of the artifacts that have been recorded.
     artifacts: Vec<Key>,
     pub(super) journal: &'j mut JournalWriter,
@@ -195,6 +198,7 @@ impl<'a> Runner<'a, '_> {
         }
         let mut groups = self.pending(input.as_ref(), cases);
         let done = groups.is_empty();
+        self.refuse_large(input.as_ref(), &mut groups)?;
         while !groups.is_empty() {
             let batch = self.build(input.as_mut(), &mut groups)?;
             self.batch(input.as_ref(), batch)?;
@@ -230,6 +234,23 @@ impl<'a> Runner<'a, '_> {
             }
         }
         groups
+    }
+
+    /// Makes rows of the cases that are above the budget.
+    fn refuse_large(&mut self, input: &dyn Input, groups: &mut Vec<Pending>) -> Result<()> {
+        let (Some(budget), unit) = (self.budget, self.workload.info().work_unit) else { return Ok(()) };
+        for group in &mut *groups {
+            let (large, others): (Pending, Pending) = group.drain(..).partition(|case| case.work > budget);
+            *group = others;
+            for case in large {
+                let need = format!("{} {unit} per pass are needed, the budget is {budget}", case.work);
+                let error = failure(Error::too_large("the case", need, "give a larger --budget, or a smaller case"))?;
+                self.without_result(Row::new(input.key(&case), self.context.settings, case.device), &error)?;
+                self.context.emit(Event::Kept(case.work));
+            }
+        }
+        groups.retain(|group| !group.is_empty());
+        Ok(())
     }
 
     /// Builds what the next groups need, as many as main memory should hold at a time. What is refused becomes rows.

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::record::journal::Journal;
 use crate::record::row::{Artifact, Check, Input as InputRecord, Key, Metric, Row, Settings};
 use crate::record::statistics::FrameStatistics;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// A workload: a folder below `workloads/`, and a line in `workloads::ALL`.
@@ -31,6 +31,11 @@ pub trait Workload: Sync {
     /// inputs.
     fn needs(&self, _cases: &[Case], _library: &Library) -> Vec<String> {
         Vec::new()
+    }
+
+    /// The devices that [`Case::device`] refers to.
+    fn devices(&self) -> Devices {
+        Devices::Chosen
     }
 
     /// Opens what some cases share: their [`Case::input`] is the same.
@@ -193,6 +198,16 @@ pub struct Verdict {
     pub warnings: Vec<String>,
 }
 
+/// The devices of a workload's runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Devices {
+    /// One, which the user chooses: the CPU or a Vulkan device.
+    Chosen,
+    /// The CPU, which has index 0, and the Vulkan device that the user chooses, which has index 1. Where there is none,
+    /// its cases get the CPU, for which [`Input::prepare`] refuses them.
+    CpuAndVulkan,
+}
+
 /// A workload's description.
 #[derive(Debug)]
 pub struct Info {
@@ -208,6 +223,11 @@ pub struct Info {
     pub work_unit: &'static str,
     /// What can vary. The first axis is what a preset's parts are about.
     pub axes: &'static [Axis],
+    /// Most [`Case::work`] of a case unless the user gives another limit; a case of more becomes a row `skipped`. Absent
+    /// where there is no such limit, nor a flag for it.
+    pub budget: Option<u64>,
+    /// True if its inputs may be found by a [`Library`]; otherwise there are no flags for it.
+    pub has_library: bool,
     /// Columns of `summary.csv` between the axes and the times: names of metrics, derived ones included.
     pub columns: &'static [&'static str],
     /// Columns of the terminal's table: name of the column of `summary.csv`, and its heading.
@@ -242,6 +262,8 @@ pub struct Part {
     pub values: BTreeMap<String, Vec<String>>,
     /// Frames that each case is thinned to; all where absent.
     pub frames: Option<usize>,
+    /// Axes whose values the user gave, and not the preset: a value without effect is a mistake there.
+    pub given: BTreeSet<String>,
 }
 
 impl Part {

@@ -5,7 +5,7 @@
 //! module and a line in [`FORMATS`].
 
 mod aff;
-mod budget;
+pub(crate) mod budget;
 pub mod cache;
 pub mod catalogue;
 mod extent;
@@ -361,7 +361,7 @@ fn read_text(path: &Path) -> Result<Vec<u8>> {
 }
 
 /// Refuses what is no regular file.
-fn regular_file(path: &Path) -> Result<std::fs::Metadata> {
+pub(crate) fn regular_file(path: &Path) -> Result<std::fs::Metadata> {
     let fault = |problem: String, hint| Error::file(path, None, problem, hint);
     match std::fs::metadata(path) {
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => Err(fault("no such file".into(), "check the path")),

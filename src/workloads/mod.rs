@@ -1,5 +1,6 @@
 //! What rtbench can measure: one folder per workload, and one line in [`ALL`].
 
+pub mod kernel_files;
 pub mod size;
 pub mod spheres;
 pub mod trace;
@@ -10,7 +11,7 @@ use crate::harness::workload::Workload;
 use std::collections::BTreeMap;
 
 /// All workloads, in the order of help.
-pub static ALL: &[&dyn Workload] = &[&trace::TRACE];
+pub static ALL: &[&dyn Workload] = &[&trace::TRACE, &spheres::SPHERES];
 
 /// A workload by its name.
 pub fn find(name: &str) -> Option<&'static dyn Workload> {

@@ -250,5 +250,5 @@ fn the_cpu_times_frames_by_the_wall() {
     assert_eq!(seen, [0, 1, 2]);
     assert!(times.iter().all(|time| time.device_ns.is_none() && time.stages.is_empty()));
     assert!(matches!(cpu.run_frames(3, |_| (), &|| true), Err(Error::Interrupted)));
-    assert_eq!(Device::Cpu(cpu).info().device_type.in_words(), "CPU twins of the kernels");
+    assert_eq!(Device::Cpu(cpu).info().device_type.in_words(), "CPU without a driver");
 }

@@ -26,6 +26,7 @@ mod ropes; // the kd-tree's ropes against its full stack, ray by ray
 mod scene; // readers and what breaks them, memory while loading, caches, procedural scenes, the catalogue
 mod schema; // JSON Schema of journals and run.json against the types and real files
 mod sources; // published numbers; tables, claims, figures and report from records
+mod spheres; // the sphere tracer: the same bits from every renderer, broken lanes, closed forms, work
 mod staged; // frames of several passes against those of one
 mod support; // small scenes, random numbers, the GPU if there is one
 mod sweep; // the sweep loop on a device that breaks, presets, the plan

@@ -30,6 +30,8 @@ static INFO: Info = Info {
     description: "",
     examples: "",
     work_unit: "sums",
+    budget: None,
+    has_library: false,
     axes: &[axis("n"), axis("method")],
     columns: &["sum", "double", "bytes", "sum_hash"],
     table: &[("method", "method"), ("frame_ms_mean", "mean ms"), ("sum", "sum"), ("result", "result")],

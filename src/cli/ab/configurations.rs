@@ -26,11 +26,13 @@ pub(super) fn measure(arguments: &Arguments, a: &str, b: &str) -> Result<Measure
     }
     let plan_a = given.with(&values_a).plan()?;
     let plan_b = given.with(&values_b).plan()?;
+    let devices = given.common.device.open_all(given.workload.devices())?;
+    devices.iter().for_each(crate::cli::device::announce);
+    let (plan_a, plan_b) = (plan_a.on_devices(devices.len()), plan_b.on_devices(devices.len()));
     let pairs = paired(info, &values_a, &values_b, &plan_a.cases, &plan_b.cases)?;
     let rounds = arguments.rounds.unwrap_or_else(|| rounds_needed(pairs.len()));
-    let opened = given.common.device.open()?;
-    crate::cli::device::announce(&opened);
-    let (out, mut recorder) = Recorder::create(arguments, [a, b], json!(opened.device.info()))?;
+    let info_of_last = devices.last().map(|opened| opened.device.info());
+    let (out, mut recorder) = Recorder::create(arguments, [a, b], json!(info_of_last))?;
     let stop = interrupt::flag(|| output::note("stopping after this frame; Ctrl-C again ends at once"))?;
     let interrupted = || stop.load(Ordering::Relaxed);
     let context = Context {
@@ -49,7 +51,7 @@ pub(super) fn measure(arguments: &Arguments, a: &str, b: &str) -> Result<Measure
         .map(|(case, _)| CellTimes { label: label(info, case, &values_a, &values_b), ..CellTimes::default() })
         .collect();
     let mut times: Vec<Vec<[RoundTime; 3]>> = vec![Vec::new(); pairs.len()];
-    let job = AbJob { workload: given.workload, context: &context, device: &opened.device, pairs: &pairs, rounds };
+    let job = AbJob { workload: given.workload, context: &context, devices: &devices, pairs: &pairs, rounds };
     let measured = ab::run(&job, &mut |pair, round, of_round| {
         times[pair].push(of_round);
         recorder.round(&cells[pair].label, round + 1, of_round.map(|time| ms(time, has_device_times(&[of_round]))))

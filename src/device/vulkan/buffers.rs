@@ -44,9 +44,14 @@ impl VulkanDevice {
     pub fn poisoned(&self, what: &str, bytes: u64) -> Result<Buffer> {
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
         let buffer = self.buffer(what, bytes, usage)?;
-        let poison = vec![POISON; (bytes as usize).div_ceil(4)];
-        self.queue.write_buffer(&buffer.buffer, 0, bytemuck::cast_slice(&poison));
+        self.poison(&buffer);
         Ok(buffer)
+    }
+
+    /// Fills a buffer that [`VulkanDevice::poisoned`] made with [`POISON`] again.
+    pub fn poison(&self, buffer: &Buffer) {
+        let poison = vec![POISON; (buffer.bytes as usize).div_ceil(4)];
+        self.queue.write_buffer(&buffer.buffer, 0, bytemuck::cast_slice(&poison));
     }
 
     /// A buffer that one pass writes and a later one reads, zero at first. It may hold the numbers of groups of
@@ -71,6 +76,11 @@ impl VulkanDevice {
     /// The most bytes that can be bound as one buffer.
     pub fn max_binding(&self) -> u64 {
         self.limits.max_storage_buffer_binding_size.min(self.limits.max_buffer_size)
+    }
+
+    /// The most bytes that a kernel can declare as one `var<uniform>`.
+    pub fn max_uniform_binding(&self) -> u64 {
+        self.limits.max_uniform_buffer_binding_size.min(self.limits.max_buffer_size)
     }
 
     /// Copies all bytes of a buffer to the begin of another.

@@ -24,7 +24,7 @@ impl Device {
 
     fn new(device: &DeviceInfo, environment: &Environment) -> Device {
         let kind = match device.device_type {
-            DeviceType::CpuTwin => "CPU twins of the kernels",
+            DeviceType::CpuTwin => "CPU without a driver",
             DeviceType::SoftwareRasteriser => "software rasteriser",
             DeviceType::IntegratedGpu => "integrated GPU",
             DeviceType::DiscreteGpu => "discrete GPU",

@@ -62,6 +62,8 @@ Ctrl-C ends a sweep in order, also while a structure is built: what was measured
 FOLDER` measures the rest. It goes on only with the same build of the program on the same device, with scenes and camera
 paths that have not changed.",
     work_unit: "rays",
+    budget: None,
+    has_library: true,
     axes: &[
         axis("scene", "FILE|NAME[:KEY=VALUE,..]", "Scene file, or name of a scene with options; may be repeated"),
         axis(

@@ -1,7 +1,21 @@
-//! Scenes of spheres.
+//! Scenes of spheres: files, the three that are part of the program, and random ones of any size.
+
+mod fields;
+mod file;
+mod load;
+mod random;
+
+pub use file::schema;
+pub use load::MAX_BYTES;
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
+
+/// Names of the scenes that are part of the program, the default first.
+pub const NAMES: [&str; 3] = ["default", "random20", "random100"];
+
+/// Most spheres of a scene.
+pub const MAX_SPHERES: usize = 100_000;
 
 /// A scene, valid: at least one sphere, positive radii, finite numbers, a `forward` that is not vertical.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,4 +101,57 @@ impl Scene {
             |s: &Sphere| PackedSphere { center: s.position, radius2: s.radius * s.radius, color: s.color, pad: 0.0 };
         self.spheres.iter().map(pack).collect()
     }
+}
+
+impl Scene {
+    /// The scene of this name: one of [`NAMES`], `random:spheres=N,seed=S`, or the path of a file.
+    ///
+    /// # Errors
+    /// [`crate::Error::Input`] for an unknown name, a bad option, and whatever is wrong with a file.
+    pub fn load(spec: &str) -> crate::Result<Scene> {
+        load::load(spec)
+    }
+
+    /// Length of the diagonal of the box around all spheres.
+    pub fn extent(&self) -> f64 {
+        extent(&self.spheres)
+    }
+
+    /// Puts a scene together: computes the hash, and the least distance of a hit from the share of the extent.
+    fn new(name: &str, camera: Camera, light: Light, (intensity, epsilon): (f32, f64), spheres: Vec<Sphere>) -> Scene {
+        let rendering = Rendering { intensity, epsilon: (epsilon * extent(&spheres)) as f32 };
+        let hash = hash(&camera, &light, &rendering, &spheres);
+        Scene { name: name.to_owned(), hash, camera, light, rendering, spheres }
+    }
+}
+
+fn extent(spheres: &[Sphere]) -> f64 {
+    let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for sphere in spheres {
+        let (center, radius) = (sphere.position.as_dvec3(), f64::from(sphere.radius));
+        (min, max) = (min.min(center - radius), max.max(center + radius));
+    }
+    (max - min).length()
+}
+
+/// BLAKE3 of all numbers, hexadecimal. Zero counts as the same with either sign.
+fn hash(camera: &Camera, light: &Light, rendering: &Rendering, spheres: &[Sphere]) -> String {
+    let mut hasher = blake3::Hasher::new();
+    let mut wide = |x: f64| {
+        hasher.update(&(x + 0.0).to_le_bytes());
+    };
+    let vectors = [camera.position, camera.forward, camera.focus_point, light.direction];
+    vectors.iter().flat_map(|v| v.to_array()).for_each(&mut wide);
+    wide(camera.fov);
+    wide(camera.orbit_velocity);
+    let mut single = |x: f32| {
+        hasher.update(&(x + 0.0).to_le_bytes());
+    };
+    [light.color, light.ambient].iter().flat_map(|v| v.to_array()).for_each(&mut single);
+    single(rendering.intensity);
+    single(rendering.epsilon);
+    for Sphere { position, radius, color } in spheres {
+        position.to_array().into_iter().chain([*radius]).chain(color.to_array()).for_each(&mut single);
+    }
+    hasher.finalize().to_hex().to_string()
 }

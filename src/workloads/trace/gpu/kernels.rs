@@ -10,8 +10,7 @@ use crate::workloads::trace::method::{Pattern, ShadowRays};
 use crate::workloads::trace::{Axis, COMMON_OPTIONS, Method, OptionInfo, Parameter, Selection, algorithms, count};
 use std::sync::LazyLock;
 
-// FILES: every file of `kernels/` (written by `build/main.rs`)
-include!(concat!(env!("OUT_DIR"), "/kernel_files.rs"));
+pub use crate::workloads::kernel_files::FILES;
 
 const COUNT_ON: &str = "generated/count_on.wgsl";
 const COUNT_OFF: &str = "generated/count_off.wgsl";

@@ -1,69 +1,30 @@
 //! `rtbench WORKLOAD`: the main job. The subcommand and its flags are generated from the workload's description.
 
-use super::device::{self, DeviceArguments};
+mod commands;
+
+pub use commands::{commands, plan_command};
+
+use super::device;
 use super::interrupt;
-use super::library::{LibraryArguments, file_name};
 use super::output;
 use super::plan;
 use super::progress::Progress;
 use crate::error::{Error, Result};
 use crate::harness::previous::PreviousRun;
 use crate::harness::run::{self, Job};
-use crate::harness::workload::{Info, Library, Workload};
+use crate::harness::workload::{Library, Workload};
 use crate::harness::{Plan, Request, environment, summary};
 use crate::names;
 use crate::record::row::{Row, Status};
-use crate::record::run::Shard;
 use crate::record::terminal::counted;
 use crate::record::{files, journal};
 use crate::workloads;
-use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
+use clap::{ArgMatches, FromArgMatches};
+use commands::{CommonArguments, check_optional};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
-
-/// Flags that all workloads have.
-#[derive(Args, Clone, Debug)]
-pub(super) struct CommonArguments {
-    /// What the other flags begin with: the name of a preset, or a TOML file like those in presets/
-    #[arg(long, value_name = "NAME|FILE", value_parser = file_name())]
-    preset: Option<String>,
-    #[command(flatten)]
-    library: LibraryArguments,
-    /// Thin each case evenly to this many frames
-    #[arg(long, value_name = "N")]
-    frames: Option<usize>,
-    /// Timed passes over all frames; a frame's time is the median over them
-    #[arg(long, value_name = "N")]
-    passes: Option<usize>,
-    /// Untimed frames before each pass
-    #[arg(long, value_name = "FRAMES")]
-    warmup: Option<usize>,
-    /// Folder for the results, new or empty [default: results/TIME-DEVICE]
-    #[arg(long, value_name = "FOLDER")]
-    out: Option<PathBuf>,
-    /// Resume the run in this folder, by the flags it began with: rows that it has are kept
-    #[arg(long, value_name = "FOLDER")]
-    resume: Option<PathBuf>,
-    /// Measure only part I of N of the plan; `rtbench merge` joins the parts
-    #[arg(long, value_name = "I/N")]
-    shard: Option<Shard>,
-    /// Exit with code 2 if a case was skipped
-    #[arg(long)]
-    strict: bool,
-    /// No progress, no table: only errors
-    #[arg(long, short)]
-    quiet: bool,
-    #[command(flatten)]
-    pub(super) device: DeviceArguments,
-}
-
-/// Flags that a resumed run may have besides `--resume`; all others belong to the beginning of a run.
-const ALSO_RESUMED: [&str; 3] = ["resume", "strict", "quiet"];
-
-/// Flags of `rtbench plan WORKLOAD` besides the axes.
-const PLANNED: [&str; 7] = ["shard", "preset", "scenes_dir", "scene_time", "frames", "passes", "warmup"];
 
 /// What was given on a command line.
 pub(super) struct Given {
@@ -73,74 +34,6 @@ pub(super) struct Given {
     pub(super) common: CommonArguments,
     /// The command line, for the record.
     pub(super) arguments: Vec<String>,
-}
-
-/// The subcommands of all workloads.
-pub fn commands() -> Vec<Command> {
-    workloads::ALL.iter().map(|workload| command(workload.info())).collect()
-}
-
-/// The subcommand of a workload.
-fn command(info: &'static Info) -> Command {
-    let mut command = CommonArguments::augment_args(with_axes(Command::new(info.name), info))
-        .about(info.summary)
-        .long_about(format!("{}\n\n{}", info.summary, info.description))
-        .after_help(info.examples);
-    // A resumed run has the flags that it began with
-    let others: Vec<_> = command.get_arguments().map(|argument| argument.get_id().clone()).collect();
-    for id in others.iter().filter(|id| !ALSO_RESUMED.contains(&id.as_str())) {
-        let id = id.clone();
-        command = command.mut_arg("resume", |resume| resume.conflicts_with(id));
-    }
-    let presets: Vec<&str> = info.presets.iter().map(|(name, _)| *name).collect();
-    let help = format!(
-        "What the other flags begin with: {}, or a TOML file like presets/{}/{}.toml [default: {}]",
-        presets.join(", "),
-        info.name,
-        presets.first().unwrap_or(&""),
-        presets.first().unwrap_or(&"")
-    );
-    command.mut_arg("preset", |preset| preset.help(help))
-}
-
-/// Adds one flag per axis.
-fn with_axes(mut command: Command, info: &'static Info) -> Command {
-    for axis in info.axes.iter().filter(|axis| axis.is_flag) {
-        let flag = axis.name.replace('_', "-");
-        command = command.arg(
-            Arg::new(axis.name)
-                .long(flag)
-                .value_name(axis.value_name)
-                .help(axis.help)
-                .value_parser(file_name())
-                .action(ArgAction::Append),
-        );
-    }
-    command
-}
-
-/// `rtbench plan`, with a subcommand per workload.
-pub fn plan_command() -> Command {
-    let mut plan = Command::new("plan")
-        .about("List the cases that a workload would measure")
-        .long_about(
-            "List the cases that a workload would measure\n\nNeeds no device. Of scenes only names and camera files are \
-             read, so that a broken scene file shows when it is measured.",
-        )
-        .subcommand_required(true)
-        .arg_required_else_help(true);
-    for workload in workloads::ALL {
-        let info = workload.info();
-        let mut command = CommonArguments::augment_args(with_axes(Command::new(info.name), info)).about(info.summary);
-        let ids: Vec<_> = command.get_arguments().map(|argument| argument.get_id().clone()).collect();
-        let hidden = |id: &str| !PLANNED.contains(&id) && !info.axes.iter().any(|axis| axis.name == id);
-        for id in ids.into_iter().filter(|id| hidden(id.as_str())) {
-            command = command.mut_arg(id, |argument| argument.hide(true));
-        }
-        let like = Arg::new("like").long("like").value_name("RUN").value_parser(clap::value_parser!(PathBuf));
-        plan = plan.subcommand(command.arg(like.help("A recorded run, whose speed gives an estimate of the time")));
-    }
-    plan
 }
 
 /// Runs the subcommand if it is a workload's, or `plan`; `None` otherwise.
@@ -163,6 +56,7 @@ impl Given {
     pub(super) fn read(workload: &'static dyn Workload, matches: &ArgMatches) -> Result<Given> {
         let common = CommonArguments::from_arg_matches(matches)
             .map_err(|error| Error::argument(workload.info().name, error.to_string(), "see --help"))?;
+        check_optional(matches, workload.info())?;
         let axes = workload.info().axes.iter().filter(|axis| axis.is_flag);
         let values = axes.filter_map(|axis| {
             let given = matches.get_many::<String>(axis.name)?;
@@ -240,6 +134,7 @@ impl Given {
                 passes: common.passes,
                 warmup: common.warmup,
                 threads: Some(common.device.threads),
+                budget: common.budget,
                 library: Library { scenes_folder: common.library.folder(), scene_time: common.library.time() },
                 shard: common.shard,
             },
@@ -277,14 +172,19 @@ impl Given {
                 let _ = std::fs::remove_dir(out);
             }
         };
-        let device = common.device.open().inspect_err(|_| remove())?;
+        let of_workload = self.workload.devices();
+        let devices = common.device.open_all(of_workload).inspect_err(|_| remove())?;
+        let plan = plan.on_devices(devices.len());
         if !common.quiet {
-            device::announce(&device);
+            devices.iter().for_each(device::announce);
         }
         let is_new = previous.provenance().is_none();
         let out = match &common.out {
             Some(out) => out.clone(),
-            None => files::create_numbered_folder(&default_folder(&device.device.info().name))?,
+            None => {
+                let name = devices.last().map_or("", |opened| &opened.device.info().name);
+                files::create_numbered_folder(&default_folder(name))?
+            }
         };
         let mut progress = Progress::new(self.workload, plan.cases.len(), plan.work(), common.quiet);
         let print_line = progress.line_printer();
@@ -299,8 +199,8 @@ impl Given {
             out: &out,
             previous,
             arguments: self.arguments.clone(),
-            devices: vec![device],
-            open: &|_| common.device.open(),
+            devices,
+            open: &|index| common.device.open_again(of_workload, index),
             interrupted: &interrupted,
             watch: &mut |event| progress.event(event),
         });

@@ -1,0 +1,231 @@
+//! The bars of the sphere tracer's renderers on the CPU, as ratios of interleaved rounds in one run:
+//! `cargo bench --bench spheres_bars`. It ends with an error where one is missed.
+//!
+//! Those of two threads are judged in a run in which two threads of independent work do 1.9 times what one does. The
+//! scalar renderer is compared with `spheres_cpp/tracer.cpp`, built here by g++ where there is one.
+
+mod common;
+#[path = "../tests/it/spheres/support.rs"]
+#[allow(dead_code)]
+mod support;
+
+use common::{median, ratio};
+use rtbench::workloads::spheres::options::{Algorithm, HitRecord, Lanes, Options, Renderer};
+use rtbench::workloads::spheres::render::CpuRenderer;
+use rtbench::workloads::spheres::render::compare::compare;
+use rtbench::workloads::spheres::view::View;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Instant;
+use support::Scene;
+
+/// Milliseconds of one frame.
+type Contestant<'a> = (String, Box<dyn FnMut() -> f64 + 'a>);
+
+const BEST: Options = Options {
+    algorithm: Algorithm::OnePass,
+    exit_on_miss: true,
+    skip_no_hit: true,
+    skip_no_discriminant: true,
+    hit: HitRecord::Index,
+};
+
+const SIMD8: Renderer = Renderer::Simd(Lanes::Eight, None);
+
+/// What is rendered, and how often.
+struct Setting {
+    scene: Scene,
+    width: u32,
+    height: u32,
+    rounds: usize,
+}
+
+impl Setting {
+    fn view(&self, trips: u32) -> View {
+        support::view(&self.scene, self.width, self.height, trips)
+    }
+}
+
+fn main() {
+    let measuring = common::measuring();
+    let scene = support::random(100, 1);
+    let setting = match measuring {
+        true => Setting { scene, width: 480, height: 270, rounds: 15 },
+        false => Setting { scene, width: 16, height: 9, rounds: 3 },
+    };
+    let pool = common::pool(0);
+    let mut met = true;
+    for (trips, bar) in [(5, 3.5), (1, 6.0)] {
+        met &= vectors(&setting, trips, bar, &pool);
+    }
+    met &= threads(&setting, &pool, if measuring { 10 } else { 1 });
+    met &= cpp(&setting, &pool);
+    if measuring && !met {
+        std::process::exit(1);
+    }
+}
+
+fn contestant<'a>(
+    name: &str,
+    renderer: Renderer,
+    options: Options,
+    setting: &'a Setting,
+    trips: u32,
+    pool: &'a rayon::ThreadPool,
+) -> Contestant<'a> {
+    let view = setting.view(trips);
+    let renderer = CpuRenderer::new(renderer, options, pool).expect("a renderer");
+    let mut image = vec![[0.0; 4]; (view.width * view.height) as usize];
+    let run = move || {
+        let start = Instant::now();
+        renderer.render(&setting.scene.spheres, &view, &mut image);
+        start.elapsed().as_secs_f64() * 1e3
+    };
+    (name.to_owned(), Box::new(run))
+}
+
+fn times(contestants: &mut [Contestant], rounds: usize) -> Vec<Vec<f64>> {
+    let mut runs: Vec<&mut dyn FnMut() -> f64> = contestants.iter_mut().map(|c| &mut *c.1 as _).collect();
+    let times = common::interleaved(&mut runs, rounds);
+    for ((name, _), times) in contestants.iter().zip(&times) {
+        println!("  {name:34} median {:8.3} ms", median(times));
+    }
+    times
+}
+
+/// Prints a ratio with its bar; true where it is met.
+fn judge(what: &str, above: &[f64], below: &[f64], met: impl Fn(f64) -> bool, bar: &str) -> bool {
+    let ratio = ratio(above, below);
+    let met = met(ratio.value);
+    let verdict = if met { "met" } else { "MISSED" };
+    println!("  {what}: {:.3} ({:.3} to {:.3}), bar: {bar}: {verdict}", ratio.value, ratio.low, ratio.high);
+    met
+}
+
+/// One thread, several pixels at once, against one thread and one pixel.
+fn vectors(setting: &Setting, trips: u32, bar: f64, pool: &rayon::ThreadPool) -> bool {
+    let Setting { width, height, rounds, .. } = *setting;
+    println!("{} spheres, {width} x {height}, {trips} trips, {rounds} interleaved rounds", setting.scene.spheres.len());
+    let paper = |algorithm, exits| Options {
+        algorithm,
+        exit_on_miss: algorithm == Algorithm::OnePass,
+        skip_no_hit: exits,
+        skip_no_discriminant: exits,
+        hit: HitRecord::InLoop,
+    };
+    let simd4 = Renderer::Simd(Lanes::Four, None);
+    let one = |name: &str, renderer, options| contestant(name, renderer, options, setting, trips, pool);
+    let mut contestants = [
+        one("sequential", Renderer::Sequential, BEST),
+        one("simd, 8 lanes", SIMD8, BEST),
+        one("simd, 4 lanes", simd4, BEST),
+        one("simd, 16 lanes", Renderer::Simd(Lanes::Sixteen, None), BEST),
+        one("sequential, two-pass", Renderer::Sequential, paper(Algorithm::TwoPass, false)),
+        one("simd, 4 lanes, two-pass", simd4, paper(Algorithm::TwoPass, false)),
+        one("sequential, one-pass", Renderer::Sequential, paper(Algorithm::OnePass, false)),
+        one("simd, 4 lanes, one-pass", simd4, paper(Algorithm::OnePass, false)),
+        one("simd, 4 lanes, one-pass, exits", simd4, paper(Algorithm::OnePass, true)),
+    ];
+    let times = times(&mut contestants, rounds);
+    judge("sequential / simd, 8 lanes", &times[0], &times[1], |r| r >= bar, &format!("at least {bar}"))
+}
+
+/// Several threads against one, in a run that shows that there are processors for them.
+fn threads(setting: &Setting, pool: &rayon::ThreadPool, tries: usize) -> bool {
+    let count = pool.current_num_threads();
+    if count != 2 {
+        println!("simd-threads: not judged, the bar is for 2 threads and there are {count}");
+        return true;
+    }
+    for number in 1..=tries {
+        println!("threads, try {number} of at most {tries}");
+        let simd_threads = Renderer::SimdThreads(Lanes::Eight, None, 0);
+        let mut contestants = [
+            contestant("simd, 8 lanes", SIMD8, BEST, setting, 5, pool),
+            contestant("simd-threads, 8 lanes", simd_threads, BEST, setting, 5, pool),
+            ("control: one, one thread".to_owned(), Box::new(|| at_once(setting, pool, 1)) as _),
+            ("control: two at once, one thread each".to_owned(), Box::new(|| at_once(setting, pool, 2)) as _),
+        ];
+        let times = times(&mut contestants, setting.rounds);
+        let doubled: Vec<f64> = times[2].iter().map(|time| time * 2.0).collect();
+        let quiet = judge("control: work of two / of one", &doubled, &times[3], |r| r >= 1.9, "at least 1.9");
+        let met = judge("simd / simd-threads", &times[0], &times[1], |r| r >= 1.8, "at least 1.8, where quiet");
+        if quiet {
+            return met;
+        }
+    }
+    println!("simd-threads: not judged, the machine was never quiet");
+    true
+}
+
+/// Milliseconds until `count` threads of `pool` have each rendered a frame of their own.
+fn at_once(setting: &Setting, pool: &rayon::ThreadPool, count: usize) -> f64 {
+    let view = setting.view(5);
+    let renderer = CpuRenderer::new(SIMD8, BEST, pool).expect("a renderer");
+    let mut images = vec![vec![support::POISON; (view.width * view.height) as usize]; count];
+    let start = Instant::now();
+    pool.scope(|scope| {
+        for image in &mut images {
+            scope.spawn(|_| renderer.render(&setting.scene.spheres, &view, image));
+        }
+    });
+    start.elapsed().as_secs_f64() * 1e3
+}
+
+/// The scalar renderer against C++; true without g++, too.
+fn cpp(setting: &Setting, pool: &rayon::ThreadPool) -> bool {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let Some(programs) = ["-O2", "-O3"].map(|level| compiled(level, folder.path())).into_iter().collect() else {
+        println!("C++: not judged, there is no g++");
+        return true;
+    };
+    let programs: Vec<PathBuf> = programs;
+    println!("scalar, one-pass, {} x {}, 5 trips", setting.width, setting.height);
+    let view = setting.view(5);
+    let mut own = vec![[0.0; 4]; (view.width * view.height) as usize];
+    let sequential = CpuRenderer::new(Renderer::Sequential, BEST, pool).expect("a renderer");
+    sequential.render(&setting.scene.spheres, &view, &mut own);
+    for program in &programs {
+        let (picture, _) = ran(program, setting, &view);
+        assert_eq!(compare(&own, &picture, view.width as usize), None, "the C++ picture is another one");
+    }
+    let mut contestants = vec![contestant("sequential", Renderer::Sequential, BEST, setting, 5, pool)];
+    for (program, level) in programs.iter().zip(["-O2", "-O3"]) {
+        contestants.push((format!("g++ {level}"), Box::new(move || ran(program, setting, &view).1)));
+    }
+    let times = times(&mut contestants, setting.rounds);
+    let faster = if median(&times[1]) < median(&times[2]) { 1 } else { 2 };
+    let what = format!("sequential / {}", contestants[faster].0);
+    judge(&what, &times[0], &times[faster], |r| r <= 1.10, "at most 1.10")
+}
+
+/// The C++ program, if there is a compiler.
+fn compiled(level: &str, folder: &Path) -> Option<PathBuf> {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/spheres_cpp/tracer.cpp");
+    let program = folder.join(format!("tracer{level}"));
+    let mut compiler = Command::new("g++");
+    compiler.args(["-std=c++17", level, "-ffp-contract=off", "-o"]).arg(&program).arg(source);
+    let status = compiler.status().ok()?;
+    assert!(status.success(), "g++ cannot build tracer.cpp");
+    Some(program)
+}
+
+/// The picture, and the milliseconds of the second of two frames of one process.
+fn ran(program: &Path, setting: &Setting, view: &View) -> (Vec<[f32; 4]>, f64) {
+    let mut input = Vec::new();
+    for number in [2, view.width, view.height, view.trips, view.spheres] {
+        input.extend(number.to_ne_bytes());
+    }
+    input.extend(&bytemuck::bytes_of(view)[..27 * 4]);
+    input.extend(bytemuck::cast_slice::<_, u8>(&setting.scene.spheres));
+    let mut command = Command::new(program);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("a process");
+    child.stdin.take().expect("a pipe").write_all(&input).expect("the program reads all");
+    let output = child.wait_with_output().expect("an end");
+    assert!(output.status.success(), "the C++ program failed");
+    let times = String::from_utf8(output.stderr).expect("numbers");
+    let time = times.lines().last().and_then(|line| line.parse().ok()).expect("a time");
+    (bytemuck::pod_collect_to_vec(&output.stdout), time)
+}

@@ -1,0 +1,3 @@
+// Spheres in a storage buffer: any number.
+
+@group(0) @binding(1) var<storage, read> spheres: array<Sphere>;

@@ -1,0 +1,7 @@
+// Output of the timed kernels: 16 bytes a pixel.
+
+@group(0) @binding(2) var<storage, read_write> pixels: array<vec4<f32>>;
+
+fn store(index: u32, path: Path) {
+    pixels[index] = vec4<f32>(path.color, band.view.one);
+}

@@ -1,0 +1,9 @@
+//! The sphere tracer: scenes and views, pictures of all renderers, their work, closed forms.
+
+mod checks; // comparisons of pictures, fed with wrong ones
+mod device; // the kernels' bits, work and layouts
+mod orbit; // views over an orbit
+mod pictures; // every CPU renderer makes the reference's bits
+mod scenes; // scene files, their schema, names, the generator, mutations
+mod support; // scenes by hand, views in double precision
+mod workload; // what is typed, planned, refused and found wrong
