@@ -24,8 +24,8 @@ pub struct RunArguments {
 #[derive(Args, Debug)]
 pub struct OptionArguments {
     /// Side of the square image (rt2 and spheres: width of the image) in tables of one size [default: the largest of
-    /// the source's sizes at which nearly every scene was measured; the thesis's are 1024, 768, 512, 256, that of rt2 is
-    /// 1408x768; spheres: the size with most rows]
+    /// the source's sizes at which nearly every scene was measured; the thesis's are 1024, 768, 512, 256, that of rt2
+    /// is 1408x768; of spheres the size with most rows]
     #[arg(long, value_name = "PIXELS")]
     resolution: Option<u32>,
     /// What a step of a tree is, in tables of counts

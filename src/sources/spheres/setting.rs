@@ -80,6 +80,11 @@ pub struct Setting {
     pub half: bool,
 }
 
+/// What the words of [`Setting::switches`] mean, for a note below a table.
+pub const WORDS: &str = "Switches: exit: a path ends at its first miss; skips: of spheres that no lane hits, and of \
+                         root and quotient without a positive discriminant; in loop, index: what the loop over the \
+                         spheres keeps of a hit.";
+
 impl Renderer {
     /// All, in the order of columns.
     pub const ALL: [Renderer; 5] =
@@ -210,7 +215,7 @@ impl Setting {
         switches(self) == switches(other)
     }
 
-    /// What differs from the paper's structure, in words: `8 lanes, index, skips`.
+    /// Everything but the renderer, in few words: `8 lanes, one-pass, exit, skips, index`. [`WORDS`] explains them.
     pub fn switches(&self) -> String {
         let mut words = Vec::new();
         if self.renderer.has_lanes() {
@@ -221,11 +226,13 @@ impl Setting {
             self.threads.map(|threads| if threads == 1 { "1 thread".into() } else { format!("{threads} threads") }),
         );
         words.push(if self.algorithm == Algorithm::TwoPass { "two-pass".into() } else { "one-pass".into() });
+        let both = self.skip_no_hit && self.skip_no_discriminant;
         let switches = [
-            (self.exit_on_miss, "exit on a miss"),
-            (self.skip_no_hit, "skip no hit"),
-            (self.skip_no_discriminant, "skip no discriminant"),
-            (self.hit == Some(Hit::InLoop), "hit in the loop"),
+            (self.exit_on_miss, "exit"),
+            (both, "skips"),
+            (self.skip_no_hit && !both, "skip no hit"),
+            (self.skip_no_discriminant && !both, "skip no discriminant"),
+            (self.hit == Some(Hit::InLoop), "in loop"),
             (self.hit == Some(Hit::Index), "index"),
             (self.half, "f16"),
         ];

@@ -4,7 +4,7 @@ use super::context::{Context, Draft, Side};
 use crate::report::{Cell, Column, Form, Row, Table};
 use crate::sources::spheres::data::{Measurement, View};
 use crate::sources::spheres::scenes::SceneKey;
-use crate::sources::spheres::setting::{Renderer, Stage};
+use crate::sources::spheres::setting::{Renderer, Stage, WORDS};
 
 /// The fastest row of a renderer in single precision.
 pub fn fastest<'a>(view: &View<'a>, scene: &SceneKey, renderer: Renderer) -> Option<&'a Measurement> {
@@ -51,6 +51,7 @@ pub fn table(context: &Context, side: &Side) -> Table {
         "The paper's structure here: one-pass, all exits, 4 lanes, the hit stored in the loop. Over sequential: against \
          the fastest sequential setting."
             .to_owned(),
+        WORDS.to_owned(),
     ];
     let title = "Fastest settings".to_owned();
     context.table(side, Draft { id: "best", title, keys: &["scene", "renderer"], columns, rows, notes })

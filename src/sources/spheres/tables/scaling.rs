@@ -5,7 +5,7 @@ use crate::report::{Cell, Column, Form, Row, Table};
 use crate::sources::spheres::curves::{Curve, OverScenes, by_lanes, by_spheres, by_threads};
 use crate::sources::spheres::data::Measurement;
 use crate::sources::spheres::scenes::{Role, SceneKey};
-use crate::sources::spheres::setting::Renderer;
+use crate::sources::spheres::setting::{Renderer, WORDS};
 
 const ID: &str = "scaling";
 
@@ -39,6 +39,7 @@ fn over_threads(context: &Context, side: &Side) -> Table {
     let notes = vec![
         "Over one thread: against the same renderer with one thread; where that was not measured, without a pool."
             .to_owned(),
+        WORDS.to_owned(),
     ];
     let keys = &["scene", "renderer", "switches", "threads"];
     draft(context, side, ("Times over threads", keys), columns, curves.iter().flat_map(of).collect(), notes)
@@ -53,7 +54,10 @@ fn over_lanes(context: &Context, side: &Side) -> Table {
         })
     };
     let curves = if side.is_published { Vec::new() } else { by_lanes(&side.view) };
-    let notes = vec!["Over sequential: with the same algorithm, exit on a miss and record of the hit.".to_owned()];
+    let notes = vec![
+        "Over sequential: with the same algorithm, exit on a miss and record of the hit.".to_owned(),
+        WORDS.to_owned(),
+    ];
     let keys = &["scene", "renderer", "switches", "lanes"];
     draft(context, side, ("Times over lanes", keys), columns, curves.iter().flat_map(of).collect(), notes)
 }
