@@ -7,7 +7,7 @@ use super::published::Published;
 use super::scenes::{Role, SceneKey};
 use super::setting::{Renderer, Stage};
 use crate::error::Result;
-use crate::report::figure::{Axis, Bar, Figure, Missing, Panel, Picture, STYLES, Series, spreads};
+use crate::report::figure::{Axis, Bar, Figure, Missing, Panel, Picture, Series, spreads};
 
 /// What the figures need.
 const NEEDS: [(&str, &str, &str); 5] = [
@@ -204,16 +204,24 @@ fn curves(found: &[Curve], gain: impl Fn(&Curve, f64) -> Option<f64>, axis: (&st
     let shown = if last.is_empty() { found.iter().collect() } else { last };
     let mut scenes: Vec<&SceneKey> = shown.iter().map(|curve| &curve.scene).collect();
     scenes.dedup();
+    // Short labels where no scene has two curves of a renderer; the same ones in all panels
+    let same = |a: &Curve, b: &Curve| a.scene == b.scene && a.setting.renderer == b.setting.renderer;
+    let alone = shown.iter().all(|curve| shown.iter().filter(|other| same(curve, other)).count() == 1);
+    let mut labels: Vec<String> = shown.iter().map(|curve| curve.label()).collect();
+    labels.sort_unstable();
+    labels.dedup();
     let panel = |scene: &SceneKey| {
         let of_scene: Vec<&&Curve> = shown.iter().filter(|curve| curve.scene == *scene).collect();
         let mut series = Vec::new();
-        for (index, curve) in of_scene.iter().enumerate() {
+        for curve in &of_scene {
             let point =
                 |(number, m): &(usize, &super::data::Measurement)| Some((*number as f64, gain(curve, m.mean_ms)?));
             let points: Vec<(f64, f64)> = curve.points.iter().filter_map(point).collect();
-            let alone = of_scene.iter().filter(|c| c.setting.renderer == curve.setting.renderer).count() == 1;
-            let label = if alone { curve.setting.renderer.title().to_owned() } else { curve.label() };
-            let style = if alone { colour(curve.setting.renderer) } else { index % STYLES };
+            let renderer = curve.setting.renderer;
+            let label = if alone { renderer.title().to_owned() } else { curve.label() };
+            // The grey of the ideal line is the style after the first six
+            let place = labels.iter().position(|known| *known == label).unwrap_or_default() % 6;
+            let style = if alone { colour(renderer) } else { place };
             if points.len() > 1 {
                 series.push(Series { label, style, faint: false, points, ringed: None });
             }

@@ -78,7 +78,7 @@ fn whole(value: f64) -> Number {
 /// The table.
 pub fn table(context: &Context, side: &Side) -> Table {
     let mut columns = vec![
-        Column::of("processors", "p", "", Form::Whole),
+        Column::of("processors", "p", "", Form::Gain),
         Column::of("processors", "counted as", "", Form::Whole),
         Column::new("S", "", Form::Time),
         Column::new("e", "", Form::Time),
