@@ -5,8 +5,8 @@
 fn follow(first: Ray) -> Path {
     var ray = first;
     var hit = no_hit();
-    var path = Path(vec3<f32>(0.0), 0u);
-    var share = vec3<f32>(band.view.one);
+    var path = Path(real3(0.0), 0u);
+    var share = real3(real(band.view.one));
     var live = true;
     for (var trip = 0u; trip < TRIPS; trip += 1u) {
         let found = search(ray, &hit);
@@ -16,7 +16,7 @@ fn follow(first: Ray) -> Path {
         }
         if (live) {
             path.color += share * lighting(ray.direction, hit);
-            share *= hit.color * band.view.intensity;
+            share *= hit.color * real(band.view.intensity);
             path.hits += 1u;
         }
         ray = reflected(ray, hit);

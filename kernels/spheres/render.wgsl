@@ -7,7 +7,7 @@
 
 // What a pixel gets: its colour, and how many rays of its path hit before the first miss.
 struct Path {
-    color: vec3<f32>,
+    color: real3,
     hits: u32,
 }
 

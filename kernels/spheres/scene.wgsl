@@ -32,11 +32,6 @@ struct Band {
     rows: u32,
 }
 
-struct Sphere {
-    center: vec3<f32>,
-    radius2: f32,
-    color: vec3<f32>,
-    pad: f32,
-}
+//!slot precision
 
 @group(0) @binding(0) var<uniform> band: Band;

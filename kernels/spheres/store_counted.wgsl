@@ -4,6 +4,6 @@
 @group(0) @binding(3) var<storage, read_write> hits_of: array<u32>;
 
 fn store(index: u32, path: Path) {
-    pixels[index] = vec4<f32>(path.color, band.view.one);
+    pixels[index] = vec4<f32>(vec3<f32>(path.color), band.view.one);
     hits_of[index] = path.hits;
 }

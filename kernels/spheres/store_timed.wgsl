@@ -3,5 +3,5 @@
 @group(0) @binding(2) var<storage, read_write> pixels: array<vec4<f32>>;
 
 fn store(index: u32, path: Path) {
-    pixels[index] = vec4<f32>(path.color, band.view.one);
+    pixels[index] = vec4<f32>(vec3<f32>(path.color), band.view.one);
 }

@@ -7,7 +7,7 @@ fn follow(first: Ray) -> Path {
     var hits: array<Hit, TRIPS>;
     var ray = first;
     var hit = no_hit();
-    var path = Path(vec3<f32>(0.0), 0u);
+    var path = Path(real3(0.0), 0u);
     var live = true;
     for (var trip = 0u; trip < TRIPS; trip += 1u) {
         let found = search(ray, &hit);
@@ -23,7 +23,7 @@ fn follow(first: Ray) -> Path {
     // A path is live until its first miss: the live hits are the first ones
     for (var trip = path.hits; trip > 0u; trip -= 1u) {
         let at = hits[trip - 1u];
-        path.color = ((path.color * band.view.intensity) * at.color) + lighting(rays[trip - 1u].direction, at);
+        path.color = ((path.color * real(band.view.intensity)) * at.color) + lighting(rays[trip - 1u].direction, at);
     }
     return path;
 }

@@ -29,7 +29,7 @@ pub struct Baseline {
     pub schema: String,
     /// The workload of its rows.
     pub workload: String,
-    /// Device and driver that made the hashes, and the times where there are any.
+    /// Driver that made the hashes, and the times where there are any, of all rows that do not name another one.
     pub driver: String,
     /// A gate that finds less than this share of a run's rows here cannot judge it, 0 to 1.
     pub min_compared_share: f64,
@@ -70,6 +70,9 @@ impl Budget {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BaselineRow {
+    /// Driver that made its hashes and time, where a run has several devices and it is not the baseline's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub driver: Option<String>,
     /// First 16 digits of the content hash of each input.
     pub inputs: BTreeMap<String, String>,
     /// Whole numbers by the part of the work that they are about; the empty part is all of it.
@@ -239,6 +242,7 @@ impl BaselineRow {
         if !self.hashes.is_empty() {
             lines.push(format!("      \"hashes\": {}", spaced(&self.hashes)));
         }
+        lines.extend(self.driver.as_ref().map(|driver| format!("      \"driver\": {}", json(driver))));
         for (name, value) in [("frame_ms", self.frame_ms), ("noise_pct", self.noise_pct)] {
             lines.extend(value.map(|value| format!("      \"{name}\": {value}")));
         }

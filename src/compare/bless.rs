@@ -69,8 +69,12 @@ pub fn bless(
             }
             continue;
         }
-        baseline.driver = run.device(row).map_or(String::new(), |device| device.driver.clone());
+        held.driver = Some(run.device(row).map_or(String::new(), |device| device.driver.clone()));
+        baseline.driver = held.driver.clone().unwrap_or_default();
         baseline.rows.insert(key, held);
+    }
+    for row in baseline.rows.values_mut() {
+        row.driver.take_if(|driver| *driver == baseline.driver);
     }
     if baseline.rows.is_empty() {
         let problem = "no row of it has a result";

@@ -199,13 +199,14 @@ impl Gate<'_> {
         self.time(key, row, held);
     }
 
-    /// True if the row was measured by the driver that the baseline's hashes and times are of.
-    fn is_same_driver(&self, row: &LeanRow) -> bool {
-        self.run.device(row).is_some_and(|device| device.driver == self.baseline.driver)
+    /// True if the row was measured by the driver that the baseline's hash and time of it are of.
+    fn is_same_driver(&self, row: &LeanRow, held: &BaselineRow) -> bool {
+        let driver = held.driver.as_ref().unwrap_or(&self.baseline.driver);
+        self.run.device(row).is_some_and(|device| device.driver == *driver)
     }
 
     fn hashes(&mut self, key: &str, row: &LeanRow, held: &BaselineRow) {
-        if !self.is_same_driver(row) {
+        if !self.is_same_driver(row, held) {
             self.judgement.hashes_left_out += held.hashes.len();
             return;
         }
@@ -221,7 +222,7 @@ impl Gate<'_> {
 
     fn time(&mut self, key: &str, row: &LeanRow, held: &BaselineRow) {
         let Some(share) = self.baseline.budgets.get(FRAME_TIME).and_then(|budget| budget.share) else { return };
-        let (Some(old), Some(times), true) = (held.frame_ms, row.times.as_ref(), self.is_same_driver(row)) else {
+        let (Some(old), Some(times), true) = (held.frame_ms, row.times.as_ref(), self.is_same_driver(row, held)) else {
             self.judgement.times_left_out += 1;
             return;
         };

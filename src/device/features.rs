@@ -11,11 +11,14 @@ pub enum Feature {
     RayQuery,
     /// Atomic additions of floats in storage buffers.
     FloatAtomics,
+    /// Arithmetic in half precision, and such numbers in buffers.
+    Half,
 }
 
 impl Feature {
     /// Every feature.
-    pub const ALL: [Feature; 4] = [Feature::Timestamps, Feature::Subgroups, Feature::RayQuery, Feature::FloatAtomics];
+    pub const ALL: [Feature; 5] =
+        [Feature::Timestamps, Feature::Subgroups, Feature::RayQuery, Feature::FloatAtomics, Feature::Half];
 
     fn bit(self) -> u8 {
         1 << self as u8

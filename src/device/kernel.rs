@@ -2,7 +2,7 @@
 //! done here, in text. A line map turns naga's lines back into files and lines.
 //!
 //! A line `//!include FILE` takes a file once; a line `//!slot NAME` takes the file that the caller chose for this
-//! name. The constants go before everything else.
+//! name. The constants go before everything else but lines that begin with `enable`, which WGSL wants first.
 
 use super::tokens::tokens;
 use std::fmt::Write;
@@ -106,6 +106,11 @@ struct Assembly<'a> {
 
 impl Assembly<'_> {
     fn push(&mut self, line: &str, file: &'static str, number: usize) {
+        if line.starts_with("enable ") {
+            self.source.text.insert_str(0, &format!("{line}\n"));
+            self.source.lines.insert(0, (file, number));
+            return;
+        }
         self.source.text.push_str(line);
         self.source.text.push('\n');
         self.source.lines.push((file, number));
@@ -162,6 +167,20 @@ mod tests {
         assert_eq!(source.text, text);
         assert_eq!(source.locate(4), "kernels/buffers.wgsl:2");
         assert_eq!(source.locate(9), "line 9 of the assembled kernel");
+    }
+
+    #[test]
+    fn extensions_come_first() {
+        const FILES: &[KernelFile] =
+            &[("main.wgsl", "//!include half.wgsl\nfn main() {}\n"), ("half.wgsl", "\nenable f16;\n")];
+        let mut constants = Constants::default();
+        constants.flag("A", true);
+        let source = assemble(FILES, "main.wgsl", &[], constants).unwrap();
+        assert_eq!(source.text, "enable f16;\nconst A: bool = true;\n\nfn main() {}\n");
+        assert_eq!(
+            [1, 2, 4].map(|line| source.locate(line)),
+            ["kernels/half.wgsl:2", "kernels/(prelude):1", "kernels/main.wgsl:2"]
+        );
     }
 
     #[test]

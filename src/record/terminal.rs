@@ -43,3 +43,11 @@ pub(crate) fn mib(bytes: u64) -> String {
 pub(crate) fn counted(number: usize, one: &str, several: &str) -> String {
     format!("{number} {}", if number == 1 { one } else { several })
 }
+
+/// A value of an axis in a row's name: with the axis for a switch, which says nothing alone.
+pub fn spelt_out(axis: &str, value: &str) -> String {
+    match value {
+        "on" | "off" => format!("{}={value}", axis.replace('_', "-")),
+        word => word.to_owned(),
+    }
+}

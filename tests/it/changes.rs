@@ -470,3 +470,42 @@ fn a_side_that_crashes_in_round_seven_is_named_and_the_rounds_before_it_are_kept
     assert!(text(&again.stderr).contains("is not empty"), "{}", text(&again.stderr));
     assert_eq!(std::fs::read_to_string(out.join("rounds.jsonl")).unwrap(), rounds);
 }
+
+/// A run of two devices: each row's hash is compared with the driver that it is of.
+#[test]
+fn rows_of_several_devices_have_their_own_driver() {
+    let gated = Gated::new();
+    gated.edit(|record| {
+        if record["record"] == "run" {
+            let mut second = record["devices"][0].clone();
+            second["driver"] = json!("Second 1.0");
+            record["devices"].as_array_mut().unwrap().push(second);
+        }
+        if record["record"] == "row" && record["key"]["axes"]["structure"] == "kdtree" {
+            record["device"] = json!(1);
+        }
+        true
+    });
+    gated.bless(0);
+    let baseline = std::fs::read_to_string(&gated.baseline).unwrap();
+    assert_eq!(
+        baseline.matches("Second 1.0").count() + baseline.matches("\"driver\": \"cpu\"").count(),
+        3,
+        "{baseline}"
+    );
+    assert!(gated.gate_with(0, &["--strict"]).contains("green"));
+    // A hash of either device that changed is found
+    for structure in ["kdtree", "bvh"] {
+        let changed =
+            Gated { folder: tempfile::tempdir().unwrap(), run: gated.run.clone(), baseline: gated.baseline.clone() };
+        let before = std::fs::read_to_string(changed.run.join("journal.jsonl")).unwrap();
+        changed.edit_row(structure, |row| row["outputs"]["image"] = json!("0123456789abcdef0123"));
+        let red = changed.gate(1);
+        assert!(red.contains("image hash") && red.contains(structure), "{red}");
+        std::fs::write(changed.run.join("journal.jsonl"), before).unwrap();
+    }
+    // Another driver's hash is not compared
+    gated.edit_baseline("\"Second 1.0\"", "\"Second 2.0\"");
+    let text = gated.gate(0);
+    assert!(text.contains("hashes were not compared"), "{text}");
+}

@@ -8,6 +8,7 @@ use crate::compare::rounds::{CellTimes, rounds_needed};
 use crate::error::{Error, Result};
 use crate::harness::ab::{self, AbJob, RoundTime};
 use crate::harness::workload::{Case, Context, Event, Info};
+use crate::record::terminal::spelt_out;
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::sync::atomic::Ordering;
@@ -26,11 +27,10 @@ pub(super) fn measure(arguments: &Arguments, a: &str, b: &str) -> Result<Measure
     }
     let plan_a = given.with(&values_a).plan()?;
     let plan_b = given.with(&values_b).plan()?;
-    let devices = given.common.device.open_all(given.workload.devices())?;
-    devices.iter().for_each(crate::cli::device::announce);
-    let (plan_a, plan_b) = (plan_a.on_devices(devices.len()), plan_b.on_devices(devices.len()));
     let pairs = paired(info, &values_a, &values_b, &plan_a.cases, &plan_b.cases)?;
     let rounds = arguments.rounds.unwrap_or_else(|| rounds_needed(pairs.len()));
+    let devices = given.common.device.open_all(given.workload.devices())?;
+    devices.iter().for_each(crate::cli::device::announce);
     let info_of_last = devices.last().map(|opened| opened.device.info());
     let (out, mut recorder) = Recorder::create(arguments, [a, b], json!(info_of_last))?;
     let stop = interrupt::flag(|| output::note("stopping after this frame; Ctrl-C again ends at once"))?;
@@ -112,7 +112,9 @@ fn paired(info: &Info, values_a: &Values, values_b: &Values, a: &[Case], b: &[Ca
         .filter(|axis| axis.is_flag && !values_a.contains_key(axis.name) && !values_b.contains_key(axis.name))
         .map(|axis| axis.name)
         .collect();
-    let is_pair = |(a, b): (&Case, &Case)| shared.iter().all(|axis| a.axis(axis) == b.axis(axis));
+    // An axis that one side does not have says nothing about the pair
+    let agrees = |a: &str, b: &str| a == b || a.is_empty() || b.is_empty();
+    let is_pair = |(a, b): (&Case, &Case)| shared.iter().all(|axis| agrees(a.axis(axis), b.axis(axis)));
     if a.len() != b.len() || !a.iter().zip(b).all(is_pair) {
         let problem = format!("A has {} cases and B has {}, which do not pair", a.len(), b.len());
         return Err(Error::argument("A and B", problem, "give each side one value of the same axes"));
@@ -126,5 +128,6 @@ fn label(info: &Info, case: &Case, values_a: &Values, values_b: &Values) -> Stri
         .axes
         .iter()
         .filter(|axis| axis.in_label && !values_a.contains_key(axis.name) && !values_b.contains_key(axis.name));
-    axes.map(|axis| case.axis(axis.name)).filter(|value| !value.is_empty()).collect::<Vec<_>>().join(" ")
+    let values = axes.map(|axis| (axis.name, case.axis(axis.name))).filter(|(_, value)| !value.is_empty());
+    values.map(|(axis, value)| spelt_out(axis, value)).collect::<Vec<_>>().join(" ")
 }

@@ -8,6 +8,7 @@ use crate::error::{Error, Result};
 use crate::record::row::Status;
 use crate::record::statistics::{geometric_mean, median};
 use crate::record::stream::{LeanRow, Name, Names};
+use crate::record::terminal::spelt_out;
 use std::collections::{BTreeMap, HashMap};
 
 /// What a row is paired by.
@@ -308,7 +309,7 @@ impl Labels {
                 label.push_str(text);
             }
         };
-        self.named.iter().for_each(|axis| add(value(axis)));
+        self.named.iter().for_each(|axis| add(&spelt_out(names.text(*axis), value(axis))));
         for axis in self.others.iter().filter(|axis| !value(axis).is_empty()) {
             add(&format!("{}={}", names.text(*axis), value(axis)));
         }

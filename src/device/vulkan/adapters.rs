@@ -4,8 +4,8 @@ use crate::device::{DeviceInfo, DeviceType, Feature, Features};
 use crate::error::{Error, Result};
 
 /// Optional features that an opened device has wherever its adapter offers them. Others are never requested: a driver
-/// may compile the same kernel otherwise with them.
-pub const WANTED: Features = Features::of(&[Feature::Timestamps]);
+/// may compile the same kernel otherwise with them. Half precision only adds a type, which few kernels use.
+pub const WANTED: Features = Features::of(&[Feature::Timestamps, Feature::Half]);
 
 /// A Vulkan adapter that was listed and can be opened.
 pub struct Adapter {
@@ -71,6 +71,7 @@ pub(super) fn wgpu_feature(feature: Feature) -> wgpu::Features {
         Feature::Subgroups => wgpu::Features::SUBGROUP,
         Feature::RayQuery => wgpu::Features::EXPERIMENTAL_RAY_QUERY,
         Feature::FloatAtomics => wgpu::Features::SHADER_FLOAT32_ATOMIC,
+        Feature::Half => wgpu::Features::SHADER_F16,
     }
 }
 

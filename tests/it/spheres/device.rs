@@ -2,13 +2,13 @@
 
 use crate::support::gpu;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use rtbench::device::VulkanDevice;
+use rtbench::device::{Feature, VulkanDevice};
 use rtbench::workloads::size::Size;
 use rtbench::workloads::spheres::gpu::kernels::{Kernel, MAX_UNIFORM_SPHERES};
 use rtbench::workloads::spheres::gpu::{GpuRenderer, kernels};
-use rtbench::workloads::spheres::options::{Algorithm, HitRecord, Options};
-use rtbench::workloads::spheres::render::compare::{compare, largest_difference};
-use rtbench::workloads::spheres::render::reference;
+use rtbench::workloads::spheres::options::{Algorithm, HitRecord, Options, Precision};
+use rtbench::workloads::spheres::render::compare::{compare, largest_difference, rmse};
+use rtbench::workloads::spheres::render::{half, reference};
 use rtbench::workloads::spheres::scene::Scene;
 use rtbench::workloads::spheres::view::View;
 
@@ -135,10 +135,10 @@ fn module(kernel: &Kernel) -> naga::Module {
 #[test]
 fn every_kernel_is_valid_and_has_its_own_text() {
     let all = kernels().unwrap();
-    assert_eq!(all.len(), 16);
+    assert_eq!(all.len(), 20);
     for (name, source) in &all {
         let module = naga::front::wgsl::parse_str(&source.text).unwrap_or_else(|error| panic!("{name}: {error}"));
-        Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module).unwrap();
+        Validator::new(ValidationFlags::all(), Capabilities::SHADER_FLOAT16).validate(&module).unwrap();
         assert!(!source.text.contains("dot("), "{name}: the order of its sum is the driver's choice");
         assert_eq!(all.iter().filter(|(_, other)| other.hash() == source.hash()).count(), 1, "{name}");
     }
@@ -147,6 +147,7 @@ fn every_kernel_is_valid_and_has_its_own_text() {
         exit_on_miss: true,
         trips: 5,
         uniform_spheres: Some(2048),
+        precision: Precision::F32,
         counting: false,
     };
     let other = Kernel { uniform_spheres: Some(512), ..kernel };
@@ -170,10 +171,20 @@ macro_rules! same_layout {
 
 #[test]
 fn struct_layouts_agree() {
-    use rtbench::workloads::spheres::{gpu::BandUniform, scene::PackedSphere};
+    use rtbench::workloads::spheres::{
+        gpu::{BandUniform, HalfSphere},
+        scene::PackedSphere,
+    };
     for uniform_spheres in [None, Some(2048)] {
         let algorithm = Algorithm::TwoPass;
-        let module = &module(&Kernel { algorithm, exit_on_miss: false, trips: 5, uniform_spheres, counting: true });
+        let module = &module(&Kernel {
+            algorithm,
+            exit_on_miss: false,
+            trips: 5,
+            uniform_spheres,
+            precision: Precision::F32,
+            counting: true,
+        });
         same_layout!(
             module,
             "View",
@@ -201,5 +212,38 @@ fn struct_layouts_agree() {
         );
         same_layout!(module, "Band", BandUniform, [view, first_column, first_row, columns, rows]);
         same_layout!(module, "Sphere", PackedSphere, [center, radius2, color, pad]);
+        let kernel = Kernel {
+            algorithm,
+            exit_on_miss: true,
+            trips: 5,
+            uniform_spheres,
+            precision: Precision::F16,
+            counting: true,
+        };
+        same_layout!(&self::module(&kernel), "Sphere", HalfSphere, [center, radius2, color, pad]);
+    }
+}
+
+#[test]
+fn half_precision_is_rendered_where_the_device_has_it() {
+    let Some(gpu) = gpu() else { return };
+    let size = Size { width: 48, height: 27 };
+    for name in ["default", "random20"] {
+        let scene = Scene::load(name).unwrap();
+        let (view, spheres) = (View::of(&scene, size, 5, 0, 1), scene.packed());
+        for algorithm in ALGORITHMS {
+            let renderer = GpuRenderer::in_precision(Precision::F16, gpu, &spheres, options(algorithm, true), size, 5);
+            if !gpu.features().has(Feature::Half) {
+                let error = renderer.err().unwrap().to_string();
+                assert_eq!(error, "unsupported: half precision, which this device has not");
+                continue;
+            }
+            let image = renderer.unwrap().render(&view).unwrap();
+            let emulated = half::render(&spheres, &view, algorithm);
+            let single = reference::render(&spheres, &view, algorithm).image;
+            let (own, other) = (rmse(&image, &emulated), rmse(&image, &single));
+            eprintln!("{name} {algorithm:?}: {own} from the emulated picture, {other} from single precision");
+            assert!(own <= 0.05 && other > 0.001, "{own} {other}");
+        }
     }
 }

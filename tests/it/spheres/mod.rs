@@ -1,9 +1,12 @@
 //! The sphere tracer: scenes and views, pictures of all renderers, their work, closed forms.
 
 mod checks; // comparisons of pictures, fed with wrong ones
+mod closed; // pictures of which a formula says what is to be seen
 mod device; // the kernels' bits, work and layouts
+mod lanes; // a broken lane is found
 mod orbit; // views over an orbit
 mod pictures; // every CPU renderer makes the reference's bits
 mod scenes; // scene files, their schema, names, the generator, mutations
 mod support; // scenes by hand, views in double precision
-mod workload; // what is typed, planned, refused and found wrong
+mod work;
+mod workload; // what is typed, planned, refused and found wrong // counters: the same rays and hits from everybody, exits taken

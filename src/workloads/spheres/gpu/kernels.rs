@@ -4,7 +4,7 @@ use crate::device::vulkan::{Binding, BindingKind};
 use crate::device::{Constants, Source, assemble};
 use crate::error::{Error, Result};
 use crate::workloads::kernel_files::FILES;
-use crate::workloads::spheres::options::Algorithm;
+use crate::workloads::spheres::options::{Algorithm, Precision};
 
 /// Pixels of a work-group along each axis.
 pub const GROUP_SIDE: u32 = 8;
@@ -23,6 +23,8 @@ pub struct Kernel {
     pub trips: u32,
     /// Spheres for which the uniform array has room; `None` for a storage buffer.
     pub uniform_spheres: Option<u32>,
+    /// Of the arithmetic, and of the spheres in their buffer.
+    pub precision: Precision,
     /// Also writes the number of hits of each pixel.
     pub counting: bool,
 }
@@ -36,8 +38,9 @@ impl Kernel {
         };
         let exits = if self.exit_on_miss { " exits" } else { "" };
         let memory = if self.uniform_spheres.is_some() { " uniform" } else { " storage" };
+        let precision = if self.precision == Precision::F16 { " half" } else { "" };
         let counting = if self.counting { " counting" } else { "" };
-        format!("{algorithm}{exits}{memory}{counting}")
+        format!("{algorithm}{exits}{memory}{precision}{counting}")
     }
 
     /// The WGSL of this variant.
@@ -52,19 +55,15 @@ impl Kernel {
         if let Some(spheres) = self.uniform_spheres {
             constants.machine("SPHERES", spheres);
         }
+        let chosen = |is_second: bool, files: [&'static str; 2]| files[usize::from(is_second)];
         let slots = [
-            (
-                "spheres",
-                ["spheres/spheres_storage.wgsl", "spheres/spheres_uniform.wgsl"][usize::from(self.is_uniform())],
-            ),
+            ("precision", chosen(self.precision == Precision::F16, ["spheres/single.wgsl", "spheres/half.wgsl"])),
+            ("spheres", chosen(self.is_uniform(), ["spheres/spheres_storage.wgsl", "spheres/spheres_uniform.wgsl"])),
             (
                 "algorithm",
-                match self.algorithm {
-                    Algorithm::TwoPass => "spheres/two_pass.wgsl",
-                    Algorithm::OnePass => "spheres/one_pass.wgsl",
-                },
+                chosen(self.algorithm == Algorithm::OnePass, ["spheres/two_pass.wgsl", "spheres/one_pass.wgsl"]),
             ),
-            ("store", ["spheres/store_timed.wgsl", "spheres/store_counted.wgsl"][usize::from(self.counting)]),
+            ("store", chosen(self.counting, ["spheres/store_timed.wgsl", "spheres/store_counted.wgsl"])),
         ];
         assemble(FILES, "spheres/render.wgsl", &slots, constants).map_err(Error::Device)
     }
@@ -82,19 +81,25 @@ impl Kernel {
     }
 }
 
-/// Every variant with the usual number of rays along a path: its name and its text.
+/// Every variant with the usual number of rays along a path, those in half precision timed and with a uniform buffer
+/// only: its name and its text.
 ///
 /// # Errors
 /// [`Error::Device`] for an include that does not exist (a mistake in `kernels/`).
 pub fn kernels() -> Result<Vec<(String, Source)>> {
     let mut all = Vec::new();
+    let uniform = Some(MAX_UNIFORM_SPHERES);
     for algorithm in [Algorithm::TwoPass, Algorithm::OnePass] {
         for exit_on_miss in [false, true] {
-            for uniform_spheres in [Some(MAX_UNIFORM_SPHERES), None] {
-                for counting in [false, true] {
-                    let kernel = Kernel { algorithm, exit_on_miss, trips: 5, uniform_spheres, counting };
-                    all.push((kernel.label(), kernel.assemble()?));
-                }
+            for (uniform_spheres, precision, counting) in [
+                (uniform, Precision::F32, false),
+                (uniform, Precision::F32, true),
+                (None, Precision::F32, false),
+                (None, Precision::F32, true),
+                (uniform, Precision::F16, false),
+            ] {
+                let kernel = Kernel { algorithm, exit_on_miss, trips: 5, uniform_spheres, precision, counting };
+                all.push((kernel.label(), kernel.assemble()?));
             }
         }
     }

@@ -1,17 +1,19 @@
 //! The sphere tracer on a Vulkan device: one invocation of a kernel per pixel.
 
 mod bands;
+mod half_spheres;
 pub mod kernels;
 
 pub use bands::{BandUniform, MAX_TESTS};
+pub use half_spheres::HalfSphere;
 pub use kernels::kernels;
 
-use super::options::Options;
+use super::options::{Options, Precision};
 use super::scene::PackedSphere;
 use super::view::View;
 use crate::device::vulkan::{Buffer, Dispatch, Groups, Pipeline, PipelineDescription, Resource};
-use crate::device::{Frame, FrameTime, Interrupted, KernelInfo, Pass, Stage, Submissions, VulkanDevice};
-use crate::error::Result;
+use crate::device::{Feature, Frame, FrameTime, Interrupted, KernelInfo, Pass, Stage, Submissions, VulkanDevice};
+use crate::error::{Error, Result};
 use crate::workloads::size::Size;
 use bands::{Tile, tiles};
 use kernels::{Kernel, MAX_UNIFORM_SPHERES};
@@ -40,11 +42,10 @@ pub struct GpuRenderer<'d> {
 }
 
 impl<'d> GpuRenderer<'d> {
-    /// Uploads spheres and compiles the timed kernel for views of this size with at most `trips` rays along a path.
-    /// Spheres are in a uniform buffer if the device's limit allows it.
+    /// Like [`GpuRenderer::in_precision`], in single precision.
     ///
     /// # Errors
-    /// [`crate::Error::Refused`] for an image or a scene that the device cannot bind, and the device's errors.
+    /// The same.
     pub fn new(
         device: &'d VulkanDevice,
         spheres: &[PackedSphere],
@@ -52,23 +53,51 @@ impl<'d> GpuRenderer<'d> {
         size: Size,
         trips: u32,
     ) -> Result<GpuRenderer<'d>> {
-        let room = (device.max_uniform_binding() / size_of::<PackedSphere>() as u64).min(MAX_UNIFORM_SPHERES.into());
+        GpuRenderer::in_precision(Precision::F32, device, spheres, options, size, trips)
+    }
+
+    /// Uploads spheres and compiles the timed kernel for views of this size with at most `trips` rays along a path.
+    /// Spheres are in a uniform buffer if the device's limit allows it.
+    ///
+    /// # Errors
+    /// [`Error::Refused`] for an image or a scene that the device cannot bind and for half precision that it has not,
+    /// and the device's errors.
+    pub fn in_precision(
+        precision: Precision,
+        device: &'d VulkanDevice,
+        spheres: &[PackedSphere],
+        options: Options,
+        size: Size,
+        trips: u32,
+    ) -> Result<GpuRenderer<'d>> {
+        if precision == Precision::F16 && !device.features().has(Feature::Half) {
+            return Err(Error::unsupported("half precision, which this device has not"));
+        }
+        let sphere_bytes = match precision {
+            Precision::F32 => size_of::<PackedSphere>(),
+            Precision::F16 => size_of::<HalfSphere>(),
+        };
+        let room = (device.max_uniform_binding() / sphere_bytes as u64).min(MAX_UNIFORM_SPHERES.into());
         let uniform_spheres = (spheres.len() as u64 <= room).then_some(room as u32);
         let uploaded = uniform_spheres.map_or(spheres.len(), |room| room as usize);
-        let sphere_bytes = size_of::<PackedSphere>() as u64 * uploaded as u64;
+        let sphere_bytes = sphere_bytes as u64 * uploaded as u64;
         let image_bytes = PIXEL_BYTES * size.pixels() as u64;
         device.check_size("the spheres", sphere_bytes, "use a smaller scene")?;
         device.check_size("the image", image_bytes, "use a smaller one")?;
         let Options { algorithm, exit_on_miss, .. } = options;
-        let kernel = Kernel { algorithm, exit_on_miss, trips, uniform_spheres, counting: false };
+        let kernel = Kernel { algorithm, exit_on_miss, trips, uniform_spheres, precision, counting: false };
         let (pipeline, info) = compile(device, &kernel)?;
+        let mut all = spheres.to_vec();
+        all.resize(uploaded, PackedSphere::default());
+        let halves: Vec<HalfSphere> = match precision {
+            Precision::F32 => Vec::new(),
+            Precision::F16 => all.iter().map(HalfSphere::from).collect(),
+        };
+        let contents: &[u8] =
+            if halves.is_empty() { bytemuck::cast_slice(&all) } else { bytemuck::cast_slice(&halves) };
         let buffer = match uniform_spheres {
-            None => device.storage("the spheres", spheres)?,
-            Some(_) => {
-                let mut all = spheres.to_vec();
-                all.resize(uploaded, PackedSphere::default());
-                device.uniform("the spheres", &all)?
-            }
+            None => device.storage("the spheres", contents)?,
+            Some(_) => device.uniform("the spheres", contents)?,
         };
         Ok(GpuRenderer {
             device,
@@ -97,7 +126,7 @@ impl<'d> GpuRenderer<'d> {
     /// image is poisoned before.
     ///
     /// # Errors
-    /// [`crate::Error::Interrupted`] between dispatches, or the device's.
+    /// [`Error::Interrupted`] between dispatches, or the device's.
     pub fn time(&self, views: &[View], interrupted: Interrupted) -> Result<Vec<FrameTime>> {
         self.device.poison(&self.output);
         let outputs = [(2, &self.output)];

@@ -1,0 +1,91 @@
+//! A broken lane is found: each kind of mistake in every lane of every width changes the picture, and the comparison
+//! names a pixel of that lane.
+
+use super::support::{self, frame, view};
+use rtbench::workloads::spheres::options::{Algorithm, HitRecord, Options, Renderer};
+use rtbench::workloads::spheres::render::compare::{FirstDifference, compare};
+use rtbench::workloads::spheres::render::{Exit, Fault, FaultKind, reference};
+
+const OPTIONS: Options = Options {
+    algorithm: Algorithm::OnePass,
+    exit_on_miss: true,
+    skip_no_hit: true,
+    skip_no_discriminant: true,
+    hit: HitRecord::Index,
+};
+
+/// The first pixel at which a renderer with a fault has other bits than the reference, as verification finds it; and
+/// whether its counts differ.
+fn found(renderer: Renderer, options: Options, fault: Fault) -> (Option<FirstDifference>, bool) {
+    // Every lane hits something, and everywhere some lanes hit while others do not
+    let scene = support::random(20, 7);
+    // 37 is no multiple of a width: the last vector of a row is partial
+    let view = view(&scene, 37, 21, 5);
+    let expected = reference::render(&scene.spheres, &view, options.algorithm);
+    let frame = frame(renderer, options, Some(fault), &scene.spheres, &view);
+    assert_eq!(compare(&frame.timed, &frame.counted, 37), None, "both are watched");
+    let counts = (frame.counts.rays, frame.counts.hits) != (expected.counts.rays, expected.counts.hits);
+    (compare(&frame.timed, &expected.image, 37), counts)
+}
+
+#[test]
+fn a_broken_lane_is_found_at_one_of_its_pixels() {
+    for renderer in support::simd() {
+        let Renderer::Simd(lanes, _) = renderer else { unreachable!() };
+        for lane in 0..lanes.count() {
+            for algorithm in [Algorithm::TwoPass, Algorithm::OnePass] {
+                for hit in [HitRecord::InLoop, HitRecord::Index] {
+                    let options = Options { algorithm, hit, ..OPTIONS };
+                    for kind in [FaultKind::ShiftDistance, FaultKind::DropMask] {
+                        let (difference, counts) = found(renderer, options, Fault { lane, kind });
+                        let what = format!("{renderer:?} {options:?} lane {lane} {kind:?}");
+                        let difference = difference.unwrap_or_else(|| panic!("not found: {what}"));
+                        assert_eq!(difference.x % lanes.count(), lane, "{what}: {difference:?}");
+                        assert!(difference.count < 37 * 21 / 2, "{what}: {difference:?}");
+                        // A lane that never hits has no reflected rays either
+                        assert!(counts || kind == FaultKind::ShiftDistance, "{what}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn all_for_any_in_an_exit_is_found() {
+    for renderer in support::simd() {
+        for exit in [Exit::Miss, Exit::NoHit, Exit::NoDiscriminant] {
+            for hit in [HitRecord::InLoop, HitRecord::Index] {
+                let options = Options { hit, ..OPTIONS };
+                let fault = Fault { lane: 0, kind: FaultKind::AllForAny(exit) };
+                let (difference, counts) = found(renderer, options, fault);
+                let what = format!("{renderer:?} {exit:?}");
+                assert!(difference.is_some() && counts, "not found: {what}");
+                // Where the exit is off, nothing asks
+                let off = match exit {
+                    Exit::Miss => Options { exit_on_miss: false, ..options },
+                    Exit::NoHit => Options { skip_no_hit: false, ..options },
+                    Exit::NoDiscriminant => Options { skip_no_discriminant: false, ..options },
+                };
+                assert_eq!(found(renderer, off, fault), (None, false), "{what}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_comparison_names_the_first_pixel_and_counts() {
+    let picture = vec![[0.25, 0.5, 0.75, 1.0]; 12];
+    assert_eq!(compare(&picture, &picture, 4), None);
+    let mut other = picture.clone();
+    other[6][1] = f32::from_bits(0.5f32.to_bits() + 1);
+    other[11][3] = 0.0;
+    let expected = FirstDifference { x: 2, y: 1, left: picture[6], right: other[6], count: 2 };
+    assert_eq!(compare(&picture, &other, 4), Some(expected));
+    // Bits, not numbers: the signs of zeros count, and equal NaNs are equal
+    let (zero, minus, nan) = ([[0.0; 4]; 1], [[-0.0; 4]; 1], [[f32::NAN; 4]; 1]);
+    assert!(compare(&zero, &minus, 1).is_some());
+    assert_eq!(compare(&nan, &nan, 1), None);
+    // A missing pixel is a difference
+    assert_eq!(compare(&picture, &picture[..11], 4).map(|d| (d.x, d.y, d.count)), Some((3, 2, 1)));
+}
