@@ -8,7 +8,7 @@ use super::run::SpheresRun;
 use super::scene::{PackedSphere, Scene};
 use super::workload::WORKLOAD;
 use super::{half, pictures};
-use crate::device::Device;
+use crate::device::{Device, Feature};
 use crate::error::{Error, Result};
 use crate::harness::workload::{Case, Context, Input, Run};
 use crate::record::row::{Input as InputRecord, Key, Metric};
@@ -70,15 +70,18 @@ impl Input for SpheresInput<'_> {
         let SpheresCase { renderer, options, precision, .. } = SpheresCase::parse(case)?;
         match (device, renderer) {
             (Device::Vulkan(device), Renderer::Gpu) => {
-                if precision == Precision::F16 {
-                    return Err(Error::unsupported(half::NO_DEVICE));
+                if precision == Precision::F32 {
+                    return Ok(Box::new(SpheresRun::on_gpu(self, device, options)));
                 }
-                Ok(Box::new(SpheresRun::on_gpu(self, device, options)))
+                if !device.features().has(Feature::Half) {
+                    return Err(Error::unsupported("speed not measured: this device has no half precision"));
+                }
+                Ok(Box::new(half::HalfRun::new(self, Some(device))))
             }
             (Device::Cpu(_), Renderer::Gpu) => {
                 Err(Error::unsupported("there is no Vulkan device, on which the renderer gpu runs"))
             }
-            (Device::Cpu(_), _) if precision == Precision::F16 => Ok(Box::new(half::HalfRun::new(self))),
+            (Device::Cpu(_), _) if precision == Precision::F16 => Ok(Box::new(half::HalfRun::new(self, None))),
             (Device::Cpu(device), _) => {
                 let mut prepared = CpuRenderer::new(renderer, options, device.pool())?;
                 if let Some(fault) = self.fault.filter(|_| renderer.is_simd()) {

@@ -1,6 +1,6 @@
 //! Comparisons of pictures, as checks of a row. Each says what it compared, how much differs, and the limit.
 
-use super::render::compare::{compare, rgba8};
+use super::render::compare::{compare, rgba8, rmse};
 use crate::record::row::{Check, Metric};
 use crate::workloads::size::Size;
 
@@ -75,6 +75,20 @@ pub fn algorithms(one_pass: &[[f32; 4]], two_pass: &[[f32; 4]]) -> Check {
     let ok = one_pass.len() == two_pass.len() && pairs.clone().all(|(a, b)| (a - b).abs() <= ALGORITHMS_DIFFER);
     let largest = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
     let message = format!("both algorithms' references differ by at most {largest:e} (limit {ALGORITHMS_DIFFER:e})");
+    Check { ok, message, metrics: Vec::new() }
+}
+
+/// A picture in half precision against single precision's: how far it is. A device's, which may round in other places,
+/// may be no farther from the one that is rounded after every operation than that one is from single precision.
+pub fn half(image: &[[f32; 4]], rounded: Option<&[[f32; 4]]>, single: &[[f32; 4]]) -> Check {
+    let from_single = rmse(image, single);
+    let mut message = format!("half precision differs by {from_single:.4} (RMSE) from single precision");
+    let mut ok = image.len() == single.len();
+    if let Some(rounded) = rounded {
+        let (from_rounded, limit) = (rmse(image, rounded), rmse(rounded, single));
+        message += &format!(", and by {from_rounded:.4} from half precision on the CPU (at most {limit:.4})");
+        ok &= from_rounded <= limit;
+    }
     Check { ok, message, metrics: Vec::new() }
 }
 

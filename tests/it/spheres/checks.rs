@@ -78,3 +78,16 @@ fn the_algorithms_may_differ_by_rounding_only() {
     assert!(!verify::algorithms(&one, &two).ok);
     assert!(!verify::algorithms(&one, &one[1..]).ok);
 }
+
+/// A device's half precision may round elsewhere, but must be half precision's picture.
+#[test]
+fn a_wrong_half_precision_is_found() {
+    let single = picture();
+    let moved = |by: f32| single.iter().map(|p| [p[0] + by, p[1], p[2], 1.0]).collect::<Vec<_>>();
+    let rounded = moved(0.01);
+    assert!(verify::half(&rounded, None, &single).ok);
+    assert!(verify::half(&moved(0.015), Some(&rounded), &single).ok);
+    let check = verify::half(&moved(0.03), Some(&rounded), &single);
+    assert!(!check.ok && check.message.contains("half precision on the CPU"), "{check:?}");
+    assert!(!verify::half(&rounded[1..], None, &single).ok);
+}
