@@ -8,6 +8,7 @@ pub mod compare;
 pub mod exact;
 pub mod half;
 pub mod levels;
+mod mode;
 mod probe;
 pub mod reference;
 mod sequential;

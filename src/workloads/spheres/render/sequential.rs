@@ -1,8 +1,8 @@
 //! One pixel at a time.
 
-use super::super::options::{Algorithm, HitRecord};
 use super::super::scene::PackedSphere;
 use super::super::view::View;
+use super::mode::{Mode, by_mode};
 use super::probe::{Exit, Probe};
 use super::{Band, Job};
 use glam::Vec3;
@@ -25,20 +25,11 @@ struct Step {
 
 /// Renders a band of rows.
 pub fn rows<P: Probe>(job: &Job, band: Band, probe: &mut P) {
-    let two_pass = job.options.algorithm == Algorithm::TwoPass;
-    let in_loop = job.options.hit == HitRecord::InLoop;
-    // Constants, so that the compiler writes a loop for each; the watched variant has one for all
-    match (P::WATCHES, two_pass, in_loop) {
-        (true, ..) => rows_by(job, band, probe, two_pass, in_loop),
-        (false, false, false) => rows_by(job, band, probe, false, false),
-        (false, false, true) => rows_by(job, band, probe, false, true),
-        (false, true, false) => rows_by(job, band, probe, true, false),
-        (false, true, true) => rows_by(job, band, probe, true, true),
-    }
+    by_mode!(P::WATCHES, &job.options, mode => rows_by(job, band, probe, mode))
 }
 
 #[inline(always)]
-fn rows_by<P: Probe>(job: &Job, band: Band, probe: &mut P, two_pass: bool, in_loop: bool) {
+fn rows_by<P: Probe, M: Mode>(job: &Job, band: Band, probe: &mut P, mode: M) {
     let Job { spheres, view, options } = *job;
     let zero = Hit { position: view.origin, normal: Vec3::ZERO, color: Vec3::ZERO };
     let mut steps = vec![Step { direction: Vec3::ZERO, hit: zero, live: false }; view.trips as usize];
@@ -49,12 +40,12 @@ fn rows_by<P: Probe>(job: &Job, band: Band, probe: &mut P, two_pass: bool, in_lo
         let (mut color, mut throughput) = (Vec3::ZERO, Vec3::splat(view.one));
         let mut made = 0;
         for step in &mut steps {
-            let found = search(spheres, view, origin, d, &mut hit, in_loop);
+            let found = search(spheres, view, origin, d, &mut hit, mode.in_loop());
             probe.searched(1);
             live &= found;
             hits += u32::from(live);
             made += 1;
-            if two_pass {
+            if mode.two_pass() {
                 *step = Step { direction: d, hit, live };
             } else if live {
                 color += throughput * lighting(view, d, &hit);
@@ -71,7 +62,7 @@ fn rows_by<P: Probe>(job: &Job, band: Band, probe: &mut P, two_pass: bool, in_lo
             d /= dot(d, d).sqrt();
             origin = hit.position;
         }
-        if two_pass {
+        if mode.two_pass() {
             // Stores that nothing reads would be left out, and with them what is to be measured
             let steps = &*std::hint::black_box(&mut steps);
             for step in steps.iter().take(made as usize).rev().filter(|step| step.live) {

@@ -1,8 +1,9 @@
 //! Several pixels of a row at once: the same operations in the same order on every lane, branches become masks.
 
-use super::super::options::{Algorithm, HitRecord, Lanes};
+use super::super::options::Lanes;
 use super::super::scene::PackedSphere;
 use super::super::view::View;
+use super::mode::{Mode, by_mode};
 use super::probe::{Exit, MAX_LANES, Probe};
 use super::vector::V3;
 use super::{Band, Job};
@@ -48,25 +49,17 @@ pub fn rows<S: Simd, P: Probe>(simd: S, lanes: Lanes, job: &Job, band: Band, pro
 }
 
 fn rows_of<S: Simd, F: SimdFloat<S, Element = f32>, P: Probe>(simd: S, job: &Job, band: Band, probe: &mut P) {
-    let two_pass = job.options.algorithm == Algorithm::TwoPass;
-    let in_loop = job.options.hit == HitRecord::InLoop;
-    // Constants, so that the compiler writes a loop for each; the watched variant has one for all
-    match (P::WATCHES, two_pass, in_loop) {
-        (true, ..) => rows_by::<S, F, P>(simd, job, band, probe, two_pass, in_loop),
-        (false, false, false) => rows_by::<S, F, P>(simd, job, band, probe, false, false),
-        (false, false, true) => rows_by::<S, F, P>(simd, job, band, probe, false, true),
-        (false, true, false) => rows_by::<S, F, P>(simd, job, band, probe, true, false),
-        (false, true, true) => rows_by::<S, F, P>(simd, job, band, probe, true, true),
-    }
+    by_mode!(P::WATCHES, &job.options, mode => rows_by::<S, F, P, _>(simd, job, band, probe, mode))
 }
 
 /// `vectorize` lets the compiler use the level's instructions in everything that is inlined into its closure.
 #[inline(always)]
-fn rows_by<S, F, P>(simd: S, job: &Job, band: Band, probe: &mut P, two_pass: bool, in_loop: bool)
+fn rows_by<S, F, P, M>(simd: S, job: &Job, band: Band, probe: &mut P, mode: M)
 where
     S: Simd,
     F: SimdFloat<S, Element = f32>,
     P: Probe,
+    M: Mode,
 {
     simd.vectorize(
         #[inline(always)]
@@ -81,7 +74,7 @@ where
                 for (vector, pixels) in image.chunks_mut(F::LEN).enumerate() {
                     let first = wide.primary(vector * F::LEN, band.first_row + row);
                     let at = row * width + vector * F::LEN;
-                    wide.paths(job, first, pixels, at, &mut steps, probe, two_pass, in_loop);
+                    wide.paths(job, first, pixels, at, &mut steps, probe, mode);
                 }
             }
         },
@@ -135,7 +128,7 @@ impl<S: Simd, F: SimdFloat<S, Element = f32>> Wide<'_, S, F> {
     /// The paths of `pixels`, which are at most as many as there are lanes; those of the other lanes are dead.
     #[inline(always)]
     #[allow(clippy::too_many_arguments)]
-    fn paths<P: Probe>(
+    fn paths<P: Probe, M: Mode>(
         &self,
         job: &Job,
         mut d: V3<F>,
@@ -143,8 +136,7 @@ impl<S: Simd, F: SimdFloat<S, Element = f32>> Wide<'_, S, F> {
         at: usize,
         steps: &mut [Step<F, F::Mask>],
         probe: &mut P,
-        two_pass: bool,
-        in_loop: bool,
+        mode: M,
     ) {
         let view = self.view;
         let mut origin = self.wide(view.origin);
@@ -154,7 +146,7 @@ impl<S: Simd, F: SimdFloat<S, Element = f32>> Wide<'_, S, F> {
         let mut hits = [0; MAX_LANES];
         let mut made = 0;
         for step in steps.iter_mut() {
-            let found = self.search(job, origin, d, &mut hit, probe, in_loop);
+            let found = self.search(job, origin, d, &mut hit, probe, mode.in_loop());
             probe.searched(F::LEN);
             live &= found;
             made += 1;
@@ -162,7 +154,7 @@ impl<S: Simd, F: SimdFloat<S, Element = f32>> Wide<'_, S, F> {
                 let bits = live.to_bitmask();
                 hits.iter_mut().enumerate().for_each(|(lane, hits)| *hits += (bits >> lane & 1) as u32);
             }
-            if two_pass {
+            if mode.two_pass() {
                 *step = Step { direction: d, hit, live };
             } else {
                 let more = color + throughput * self.lighting(d, &hit);
@@ -181,7 +173,7 @@ impl<S: Simd, F: SimdFloat<S, Element = f32>> Wide<'_, S, F> {
             d = d / d.dot(d).sqrt();
             origin = hit.position;
         }
-        if two_pass {
+        if mode.two_pass() {
             // Stores that nothing reads would be left out, and with them what is to be measured
             let steps = &*std::hint::black_box(steps);
             for step in steps.iter().take(made as usize).rev() {
