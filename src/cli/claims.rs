@@ -1,8 +1,9 @@
 //! `rtbench claims`: the claims of sources, judged by measurements.
 
-use super::runs::{DeviceArguments, Into, RunArguments, write_or_print};
+use super::runs::{DeviceArguments, Into, ProcessorArguments, RunArguments, write_or_print};
 use crate::error::Result;
 use crate::report::splice::Need;
+use crate::sources::Options;
 use crate::sources::claims::{self, Finding, Form};
 use clap::Args;
 use std::path::PathBuf;
@@ -21,6 +22,8 @@ pub struct Arguments {
     format: Form,
     #[command(flatten)]
     device: DeviceArguments,
+    #[command(flatten)]
+    processors: ProcessorArguments,
     /// Write to a file instead of standard output
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -35,8 +38,9 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<()> {
     let opened = arguments.runs.read()?;
     let devices = arguments.device.select(&opened.sources)?;
+    let options = |device| Options { device, processors: arguments.processors.processors, ..Options::default() };
     let findings: Vec<Vec<Finding>> =
-        opened.each().zip(devices).map(|((_, results), device)| results.claims(device)).collect();
+        opened.each().zip(devices).map(|((_, results), device)| results.claims(&options(device))).collect();
     let by = match opened.runs.len() {
         0 => "the numbers that it printed".into(),
         1 => "1 run".into(),

@@ -12,10 +12,10 @@ use std::path::{Path, PathBuf};
 /// Recorded runs, and the sources that show them.
 #[derive(Args, Debug)]
 pub struct RunArguments {
-    /// Folders of recorded runs, as `rtbench sweep` writes them; none: the published numbers
+    /// Folders of recorded runs, as `rtbench sweep` or `rtbench spheres` writes them; none: the published numbers
     #[arg(value_name = "RUN")]
     runs: Vec<PathBuf>,
-    /// Source of tables, figures and claims: thesis, rt2 [default: every source that the runs fit]
+    /// Source of tables, figures and claims: thesis, rt2, spheres [default: every source that the runs fit]
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     source: Vec<String>,
 }
@@ -23,8 +23,9 @@ pub struct RunArguments {
 /// What tables show.
 #[derive(Args, Debug)]
 pub struct OptionArguments {
-    /// Side of the square image (rt2: width of the image) in tables of one size [default: the largest of the source's
-    /// sizes at which nearly every scene was measured; the thesis's are 1024, 768, 512, 256, that of rt2 is 1408x768]
+    /// Side of the square image (rt2 and spheres: width of the image) in tables of one size [default: the largest of
+    /// the source's sizes at which nearly every scene was measured; the thesis's are 1024, 768, 512, 256, that of rt2
+    /// is 1408x768; of spheres the size with most rows]
     #[arg(long, value_name = "PIXELS")]
     resolution: Option<u32>,
     /// What a step of a tree is, in tables of counts
@@ -33,13 +34,23 @@ pub struct OptionArguments {
     /// Which rows tables have
     #[arg(long, value_enum, default_value_t)]
     pub rows: Rows,
+    #[command(flatten)]
+    processors: ProcessorArguments,
+}
+
+/// How many processors a GPU has, which no driver says.
+#[derive(Args, Debug)]
+pub struct ProcessorArguments {
+    /// Processors of the GPU, for the Karp-Flatt metric of spheres [default: none, so that a GPU has no such metric]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub processors: Option<u32>,
 }
 
 /// A published device.
 #[derive(Args, Debug)]
 pub struct DeviceArguments {
     /// The device whose published numbers are shown or compared with: GTX280, 8600GT [default: each table's own; the
-    /// thesis has 8600GT in 5.7 and B.4 to B.6, GTX280 in the others]
+    /// thesis has 8600GT in 5.7 and B.4 to B.6, GTX280 in the others; rt2 and spheres have none]
     #[arg(long, alias = "card", value_name = "NAME")]
     device: Option<String>,
 }
@@ -98,7 +109,14 @@ impl DeviceArguments {
 impl OptionArguments {
     /// The options for a source.
     pub fn options(&self, published: bool, device: Option<usize>) -> Options {
-        Options { published, device, resolution: self.resolution, convention: self.convention, rows: self.rows }
+        Options {
+            published,
+            device,
+            resolution: self.resolution,
+            convention: self.convention,
+            rows: self.rows,
+            processors: self.processors.processors,
+        }
     }
 }
 

@@ -20,7 +20,7 @@ pub struct Arguments {
     #[command(flatten)]
     runs: RunArguments,
     /// Tables by their numbers, or all; the thesis has 5.1 to 5.14, 5.3.4 (speed-ups between devices) and B.1 to B.6,
-    /// rt2 has 4.4 to 4.6
+    /// rt2 has 4.4 to 4.6, spheres has 1 to 4, best, metrics, switches, scaling, half and work
     #[arg(long, default_value = "all", value_name = "LIST")]
     table: String,
     /// Format of the tables
@@ -51,6 +51,8 @@ Examples:
       the structures of a run, each number with the published one
   rtbench tables results/A results/B --table 5.2,5.3.4,B.1 --format markdown
       two devices, and how much faster one is
+  rtbench tables results/RUN --source spheres --table 1,2,3,4,metrics --published
+      speed-ups of threads, SIMD and the GPU, with the printed ones
   rtbench tables results/RUN --format csv -o tables.csv
       one line per number, for other programs
   rtbench tables results/RUN --table 5.12 --rows measured --into README.md

@@ -9,6 +9,7 @@ pub mod report;
 pub mod rows;
 pub mod rt2;
 pub mod runs;
+pub mod spheres;
 pub mod thesis;
 
 use crate::error::{Error, Result};
@@ -19,7 +20,7 @@ use claims::Finding;
 use convention::Convention;
 
 /// All sources.
-pub const ALL: [&Source; 2] = [&thesis::SOURCE, &rt2::SOURCE];
+pub const ALL: [&Source; 3] = [&thesis::SOURCE, &rt2::SOURCE, &spheres::SOURCE];
 
 /// A source.
 pub struct Source {
@@ -45,8 +46,8 @@ pub trait Results {
     fn notes(&self) -> &[String];
     /// The tables of these numbers, at least one of each. A note names what was not measured.
     fn tables(&self, ids: &[&str], options: &Options) -> Vec<Table>;
-    /// The claims, judged by these numbers and, for exceptions, by the published numbers of a device.
-    fn claims(&self, device: Option<usize>) -> Vec<Finding>;
+    /// The claims, judged by these numbers and, for exceptions, by the published numbers of [`Options::device`].
+    fn claims(&self, options: &Options) -> Vec<Finding>;
     /// The figures that there is data for, and the others.
     ///
     /// # Errors
@@ -96,6 +97,8 @@ pub struct Options {
     pub convention: Convention,
     /// Which rows.
     pub rows: Rows,
+    /// Processors of the GPU, for metrics that need their number; none: not known.
+    pub processors: Option<u32>,
 }
 
 /// The sources of these names; without any, all that fit the runs.

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 const WIDTH: usize = 120;
 
 /// Files and folders that are checked.
-const CHECKED: [&str; 22] = [
+const CHECKED: [&str; 23] = [
     "ARCHITECTURE.md",
     "CHANGELOG.md",
     "CONTRIBUTING.md",
@@ -26,6 +26,7 @@ const CHECKED: [&str; 22] = [
     "presets",
     "results/README.md",
     "results/rt2-2010",
+    "results/spheres-paper",
     "results/thesis-2009",
     "scenes/README.md",
     "scenes/catalog.toml",

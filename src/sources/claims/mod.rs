@@ -29,6 +29,8 @@ pub enum Basis {
     FrameTimes,
     /// Steps and triangle tests per ray: where frame times of a device say nothing about a GPU.
     Counts,
+    /// How far pictures differ.
+    Pictures,
 }
 
 impl Basis {
@@ -40,6 +42,7 @@ impl Basis {
             Basis::Properties => "properties of structures",
             Basis::FrameTimes => "frame times",
             Basis::Counts => "counts",
+            Basis::Pictures => "pictures",
         }
     }
 }

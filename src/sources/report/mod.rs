@@ -49,7 +49,7 @@ fn part_of(part: &Part, runs: &[RecordedRun], title: &str, is_one_of_several: bo
     let figures: String = figures.iter().map(html::figure).collect();
 
     let mut sections = vec![
-        ("claims", "Claims", "Claims", claims::html(&results.claims(options.device))),
+        ("claims", "Claims", "Claims", claims::html(&results.claims(options))),
         ("tables", "Tables", "Tables", tables + &absent),
         ("figures", "Figures", "Figures", figures + &missing.iter().map(not_drawn).collect::<String>()),
     ];

@@ -26,18 +26,21 @@ pub fn write(runs: &[RecordedRun]) -> Result<String> {
         .iter()
         .map(|name| format!("<p class=\"note\">{} is left out: larger than 4 MiB.</p>\n", escape(name)))
         .collect();
+    let recorded = || runs.iter().flat_map(|run| scenes_of(&run.general));
+    let of_half: BTreeSet<String> = recorded().flat_map(half_of).map(|(file, _)| file).collect();
+    let of_scene: BTreeMap<String, &str> = recorded().map(|name| (names::distinct_slug(name), name)).collect();
     // A set of whole names: `conference-obj` sorts between `conference` and `conference-steps`
-    let scenes: BTreeSet<&str> = pictures.names().map(|name| name.strip_suffix(STEPS).unwrap_or(name)).collect();
+    let names = pictures.names().filter(|name| !of_half.contains(*name));
+    let scenes: BTreeSet<&str> = names.map(|name| name.strip_suffix(STEPS).unwrap_or(name)).collect();
     if scenes.is_empty() {
         return Ok(format!("<p class=\"note\">The runs' folders have no pictures.</p>\n{notes}"));
     }
-    let recorded = runs.iter().flat_map(|run| scenes_of(&run.general));
-    let recorded: BTreeMap<String, &str> = recorded.map(|name| (names::distinct_slug(name), name)).collect();
     let pair = |file: &&str| {
-        let scene = recorded.get(*file).unwrap_or(file);
+        let scene = of_scene.get(*file).unwrap_or(file);
         let picture = pictures.figure(file, scene, "picture");
         let step_map = pictures.figure(&format!("{file}{STEPS}"), scene, STEP_MAP);
-        format!("<h3>{}</h3>\n<div class=\"pair\">\n{picture}{step_map}</div>\n", escape(scene))
+        let half: String = half_of(scene).iter().map(|(file, caption)| pictures.figure(file, scene, caption)).collect();
+        format!("<h3>{}</h3>\n<div class=\"pair\">\n{picture}{step_map}{half}</div>\n", escape(scene))
     };
     Ok(scenes.iter().map(pair).collect::<String>() + &notes)
 }
@@ -45,4 +48,10 @@ pub fn write(runs: &[RecordedRun]) -> Result<String> {
 /// The names of the scenes that a run's rows and structures were measured on.
 fn scenes_of(journal: &Journal) -> impl Iterator<Item = &str> {
     journal.inputs.iter().filter(|input| input.kind == "scene").map(|input| input.name.as_str())
+}
+
+/// The files of a scene's pictures in half precision without `.png`, each with what it shows.
+fn half_of(scene: &str) -> [(String, &'static str); 2] {
+    [("-half", "in half precision"), ("-half-difference", "difference of half from single precision, brightened")]
+        .map(|(end, caption)| (names::distinct_slug(&format!("{scene}{end}")), caption))
 }

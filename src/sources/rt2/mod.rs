@@ -66,7 +66,7 @@ impl Results for Numbers {
         tables::build(self.data.as_ref(), &self.published, options, ids)
     }
 
-    fn claims(&self, _device: Option<usize>) -> Vec<Finding> {
+    fn claims(&self, _options: &Options) -> Vec<Finding> {
         claims::judge(self.data.as_ref(), &self.published)
     }
 

@@ -68,8 +68,8 @@ impl Results for Numbers {
         tables::build(&self.data, &self.published, options, ids)
     }
 
-    fn claims(&self, device: Option<usize>) -> Vec<Finding> {
-        claims::judge(&self.data, &self.published, device.unwrap_or(0))
+    fn claims(&self, options: &Options) -> Vec<Finding> {
+        claims::judge(&self.data, &self.published, options.device.unwrap_or(0))
     }
 
     fn figures(&self) -> Result<(Vec<Figure>, Vec<Missing>)> {

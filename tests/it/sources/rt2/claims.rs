@@ -10,7 +10,7 @@ use rtbench::sources::rt2::structures::{BIH, BVH, CULLED, MIN_MAX, ROPES, SORT, 
 use rtbench::workloads::trace::rays::Config;
 
 fn findings(builder: Builder) -> Vec<Finding> {
-    (SOURCE.read)(&[builder.run]).claims(None)
+    (SOURCE.read)(&[builder.run]).claims(&Default::default())
 }
 
 fn finding(builder: Builder, claim: &str) -> Finding {
@@ -235,7 +235,7 @@ fn what_failed_is_named_and_decides_nothing() {
 
 #[test]
 fn what_was_printed_is_judged_by_the_same_rule() {
-    let all = (SOURCE.read)(&[]).claims(None);
+    let all = (SOURCE.read)(&[]).claims(&Default::default());
     let of = |claim: &str| all.iter().find(|f| f.claim == claim).unwrap();
     for claim in ["1", "2u", "3", "4", "4a", "6"] {
         assert_eq!(of(claim).verdict, Verdict::Holds, "{claim}");
@@ -243,7 +243,7 @@ fn what_was_printed_is_judged_by_the_same_rule() {
     // A claim that is a printed number is not judged by itself.
     assert!(["2a", "2c", "5", "7"].iter().all(|claim| of(claim).verdict == Verdict::NotMeasured));
     // Measured numbers have the count of the printed ones next to them.
-    let measured = (SOURCE.read)(&[everything()]).claims(None);
+    let measured = (SOURCE.read)(&[everything()]).claims(&Default::default());
     let of = |claim: &str| measured.iter().find(|f| f.claim == claim).unwrap();
     assert_eq!((of("1").published, of("4").published, of("2a").published), (Some((3, 3)), Some((2, 2)), None));
     assert!(["1", "2u", "4", "5", "6", "7", "10"].iter().all(|claim| of(claim).verdict == Verdict::Holds));
@@ -252,10 +252,10 @@ fn what_was_printed_is_judged_by_the_same_rule() {
 
 #[test]
 fn forms_agree_and_repeat() {
-    let all = (SOURCE.read)(&[everything()]).claims(None);
+    let all = (SOURCE.read)(&[everything()]).claims(&Default::default());
     for form in [Form::Text, Form::Markdown, Form::Json] {
         let once = write(std::slice::from_ref(&all), "1 run", form);
-        assert_eq!(once, write(&[(SOURCE.read)(&[everything()]).claims(None)], "1 run", form));
+        assert_eq!(once, write(&[(SOURCE.read)(&[everything()]).claims(&Default::default())], "1 run", form));
         assert!(once.contains("rt2") || once.contains("thesis of 2010"), "{once}");
     }
     let text = write(std::slice::from_ref(&all), "1 run", Form::Text);

@@ -254,7 +254,7 @@ fn shown(folder: &Path) -> (Vec<Table>, Vec<Finding>, String) {
     let results = (SOURCE.read)(&[run]);
     let options = Options { published: true, ..Options::default() };
     let journal = std::fs::read_to_string(folder.join(FILE_NAME)).unwrap();
-    (results.tables(SOURCE.tables, &options), results.claims(None), journal)
+    (results.tables(SOURCE.tables, &options), results.claims(&Default::default()), journal)
 }
 
 fn root() -> &'static Path {

@@ -154,7 +154,7 @@ fn documents(run: RecordedRun) -> Vec<(&'static str, String)> {
         ("tables as CSV", tables(false, Format::Csv)),
         ("tables with published numbers as text", tables(true, Format::Text)),
         ("tables with published numbers as CSV", tables(true, Format::Csv)),
-        ("claims as JSON", claims::write(&[results.claims(None)], "1 run", Form::Json)),
+        ("claims as JSON", claims::write(&[results.claims(&Default::default())], "1 run", Form::Json)),
         ("figures", figures.collect()),
     ]
 }
