@@ -5,20 +5,18 @@
 //! scalar renderer is compared with `spheres_cpp/tracer.cpp`, built here by g++ where there is one.
 
 mod common;
-#[path = "../tests/it/spheres/support.rs"]
-#[allow(dead_code)]
-mod support;
 
 use common::{median, ratio};
+use rtbench::workloads::size::Size;
 use rtbench::workloads::spheres::options::{Algorithm, HitRecord, Lanes, Options, Renderer};
 use rtbench::workloads::spheres::render::CpuRenderer;
 use rtbench::workloads::spheres::render::compare::compare;
+use rtbench::workloads::spheres::scene::{PackedSphere, Scene};
 use rtbench::workloads::spheres::view::View;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Instant;
-use support::Scene;
 
 /// Milliseconds of one frame.
 type Contestant<'a> = (String, Box<dyn FnMut() -> f64 + 'a>);
@@ -36,23 +34,24 @@ const SIMD8: Renderer = Renderer::Simd(Lanes::Eight, None);
 /// What is rendered, and how often.
 struct Setting {
     scene: Scene,
-    width: u32,
-    height: u32,
+    spheres: Vec<PackedSphere>,
+    size: Size,
     rounds: usize,
 }
 
 impl Setting {
     fn view(&self, trips: u32) -> View {
-        support::view(&self.scene, self.width, self.height, trips)
+        View::of(&self.scene, self.size, trips, 0, 1)
     }
 }
 
 fn main() {
     let measuring = common::measuring();
-    let scene = support::random(100, 1);
+    let scene = Scene::load("random100").expect("a scene of the program");
+    let spheres = scene.packed();
     let setting = match measuring {
-        true => Setting { scene, width: 480, height: 270, rounds: 15 },
-        false => Setting { scene, width: 16, height: 9, rounds: 3 },
+        true => Setting { scene, spheres, size: Size { width: 480, height: 270 }, rounds: 15 },
+        false => Setting { scene, spheres, size: Size { width: 16, height: 9 }, rounds: 3 },
     };
     let pool = common::pool(0);
     let mut met = true;
@@ -79,7 +78,7 @@ fn contestant<'a>(
     let mut image = vec![[0.0; 4]; (view.width * view.height) as usize];
     let run = move || {
         let start = Instant::now();
-        renderer.render(&setting.scene.spheres, &view, &mut image);
+        renderer.render(&setting.spheres, &view, &mut image);
         start.elapsed().as_secs_f64() * 1e3
     };
     (name.to_owned(), Box::new(run))
@@ -105,8 +104,8 @@ fn judge(what: &str, above: &[f64], below: &[f64], met: impl Fn(f64) -> bool, ba
 
 /// One thread, several pixels at once, against one thread and one pixel.
 fn vectors(setting: &Setting, trips: u32, bar: f64, pool: &rayon::ThreadPool) -> bool {
-    let Setting { width, height, rounds, .. } = *setting;
-    println!("{} spheres, {width} x {height}, {trips} trips, {rounds} interleaved rounds", setting.scene.spheres.len());
+    let (Size { width, height }, rounds) = (setting.size, setting.rounds);
+    println!("{} spheres, {width} x {height}, {trips} trips, {rounds} interleaved rounds", setting.spheres.len());
     let paper = |algorithm, exits| Options {
         algorithm,
         exit_on_miss: algorithm == Algorithm::OnePass,
@@ -163,11 +162,11 @@ fn threads(setting: &Setting, pool: &rayon::ThreadPool, tries: usize) -> bool {
 fn at_once(setting: &Setting, pool: &rayon::ThreadPool, count: usize) -> f64 {
     let view = setting.view(5);
     let renderer = CpuRenderer::new(SIMD8, BEST, pool).expect("a renderer");
-    let mut images = vec![vec![support::POISON; (view.width * view.height) as usize]; count];
+    let mut images = vec![vec![[1.0; 4]; (view.width * view.height) as usize]; count];
     let start = Instant::now();
     pool.scope(|scope| {
         for image in &mut images {
-            scope.spawn(|_| renderer.render(&setting.scene.spheres, &view, image));
+            scope.spawn(|_| renderer.render(&setting.spheres, &view, image));
         }
     });
     start.elapsed().as_secs_f64() * 1e3
@@ -181,11 +180,11 @@ fn cpp(setting: &Setting, pool: &rayon::ThreadPool) -> bool {
         return true;
     };
     let programs: Vec<PathBuf> = programs;
-    println!("scalar, one-pass, {} x {}, 5 trips", setting.width, setting.height);
+    println!("scalar, one-pass, {} x {}, 5 trips", setting.size.width, setting.size.height);
     let view = setting.view(5);
     let mut own = vec![[0.0; 4]; (view.width * view.height) as usize];
     let sequential = CpuRenderer::new(Renderer::Sequential, BEST, pool).expect("a renderer");
-    sequential.render(&setting.scene.spheres, &view, &mut own);
+    sequential.render(&setting.spheres, &view, &mut own);
     for program in &programs {
         let (picture, _) = ran(program, setting, &view);
         assert_eq!(compare(&own, &picture, view.width as usize), None, "the C++ picture is another one");
@@ -218,7 +217,7 @@ fn ran(program: &Path, setting: &Setting, view: &View) -> (Vec<[f32; 4]>, f64) {
         input.extend(number.to_ne_bytes());
     }
     input.extend(&bytemuck::bytes_of(view)[..27 * 4]);
-    input.extend(bytemuck::cast_slice::<_, u8>(&setting.scene.spheres));
+    input.extend(bytemuck::cast_slice::<_, u8>(&setting.spheres));
     let mut command = Command::new(program);
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().expect("a process");

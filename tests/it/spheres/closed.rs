@@ -123,7 +123,7 @@ fn light_from_behind_leaves_ambient_light_exactly() {
     let view = view(&scene, 41, 31, 3);
     let expected = color * view.ambient;
     for (image, hits) in pictures(&scene.spheres, &view) {
-        assert!(hits.iter().any(|&hits| hits == 1));
+        assert!(hits.contains(&1));
         for (pixel, hits) in image.iter().zip(&hits) {
             let expected = if *hits == 1 { expected } else { Vec3::ZERO };
             assert_eq!(pixel[..3], expected.to_array());

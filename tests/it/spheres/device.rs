@@ -57,6 +57,14 @@ fn every_kernel_makes_the_bits_of_the_reference() {
     }
 }
 
+/// More pixels than work-groups of one dispatch: the image has several parts.
+#[test]
+fn wide_images_have_several_parts() {
+    let Some(gpu) = gpu() else { return };
+    let width = gpu.max_groups().min(65_535) * 8 + 100;
+    check(gpu, &Scene::load("default").unwrap(), (width, 1), 2);
+}
+
 #[test]
 fn many_spheres_are_in_a_storage_buffer() {
     let Some(gpu) = gpu() else { return };

@@ -8,5 +8,5 @@ mod orbit; // views over an orbit
 mod pictures; // every CPU renderer makes the reference's bits
 mod scenes; // scene files, their schema, names, the generator, mutations
 mod support; // scenes by hand, views in double precision
-mod work;
-mod workload; // what is typed, planned, refused and found wrong // counters: the same rays and hits from everybody, exits taken
+mod work; // counters: the same rays and hits from every renderer, exits taken
+mod workload; // what is typed, planned, refused and found wrong

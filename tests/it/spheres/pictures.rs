@@ -113,28 +113,26 @@ fn near_exact(picture: &[[f32; 4]], exact: &[[f64; 3]]) -> f64 {
     seen.iter().filter(|pair| near(pair)).count() as f64 / seen.len() as f64
 }
 
-/// Rounding grows with each reflection at a convex surface, and at edges another sphere is hit: a pixel in a hundred may
-/// be further away.
+/// At edges another sphere is hit, and rounding grows with each reflection at a small sphere: one pixel in a thousand
+/// may be further away, and one in fifty after five trips among a hundred spheres.
 #[test]
 fn the_picture_is_near_that_in_double_precision() {
-    for (spheres, seed) in [(3, 1), (20, 7), (100, 2)] {
+    for (spheres, seed, trips, bar) in [(3, 1, 5, 0.999), (20, 7, 5, 0.999), (100, 2, 1, 0.999), (100, 2, 5, 0.98)] {
         let scene = support::random(spheres, seed);
-        let view = view(&scene, 160, 90, 5);
+        let view = view(&scene, 160, 90, trips);
         let exact = exact::render(&scene.spheres, &view);
         let picture = reference::render(&scene.spheres, &view, Algorithm::OnePass);
         let share = near_exact(&picture.image, &exact);
-        eprintln!("SHARE {share}");
-        assert!(share >= 0.99, "{spheres} spheres: {share}");
+        assert!(share >= bar, "{spheres} spheres, {trips} trips: {share}");
 
-        // A picture with one trip less, one with another light and one that is moved by a pixel are not near
-        let fewer = View { trips: 1, ..view };
+        // A picture with another number of trips, one with another light and one that is moved by a pixel are not near
+        let depth = View { trips: if trips == 1 { 2 } else { 1 }, ..view };
         let light = View { light: DVec3::new(0.6, 0.7, 0.4).normalize().as_vec3(), ..view };
         let moved = View { corner: view.corner + view.right, ..view };
-        for wrong in [fewer, light, moved] {
+        for wrong in [depth, light, moved] {
             let wrong = reference::render(&scene.spheres, &wrong, Algorithm::OnePass);
             let share = near_exact(&wrong.image, &exact);
-            eprintln!("SHARE wrong {share}");
-            assert!(share < 0.99, "{spheres} spheres: {share}");
+            assert!(share < bar, "{spheres} spheres, {trips} trips: {share}");
         }
     }
 }

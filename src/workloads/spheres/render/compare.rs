@@ -36,7 +36,7 @@ fn differences<'a>(left: &'a [[f32; 4]], right: &'a [[f32; 4]]) -> impl Iterator
 
 /// NaN counts as 0, as it does in a picture of bytes.
 fn clamped(channel: f32) -> f64 {
-    f64::from(channel).max(0.0).min(1.0)
+    if channel.is_nan() { 0.0 } else { f64::from(channel).clamp(0.0, 1.0) }
 }
 
 /// Root of the mean squared difference of the clamped colour channels, 0 to 1.

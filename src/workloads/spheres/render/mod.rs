@@ -59,7 +59,8 @@ impl<'p> CpuRenderer<'p> {
     /// A renderer with threads takes `pool`, or starts a pool where it has its own number of threads.
     ///
     /// # Errors
-    /// Refused: [`Renderer::Gpu`], and a level that this processor lacks. [`Error::Input`] if threads cannot be started.
+    /// Refused: [`Renderer::Gpu`], and a level that this processor lacks. [`Error::Input`] if threads cannot be
+    /// started.
     pub fn new(renderer: Renderer, options: Options, pool: &'p ThreadPool) -> Result<CpuRenderer<'p>> {
         let pool = |threads| match threads {
             0 => Ok(Pool::Device(pool)),
@@ -115,7 +116,8 @@ impl<'p> CpuRenderer<'p> {
         }
     }
 
-    /// The same picture by the counting variant. `hits`, one for each pixel, becomes the number of live hits of its path.
+    /// The same picture by the counting variant. `hits`, one for each pixel, becomes the number of live hits of its
+    /// path.
     pub fn count(&self, spheres: &[PackedSphere], view: &View, image: &mut [[f32; 4]], hits: &mut [u32]) -> Counts {
         let job = Job { spheres, view, options: self.options };
         let none = || Counts::new(view.trips as usize);

@@ -156,7 +156,7 @@ impl<S: Simd, F: SimdFloat<S, Element = f32>> Wide<'_, S, F> {
         for step in steps.iter_mut() {
             let found = self.search(job, origin, d, &mut hit, probe, in_loop);
             probe.searched(F::LEN);
-            live = live & found;
+            live &= found;
             made += 1;
             if P::WATCHES {
                 let bits = live.to_bitmask();
