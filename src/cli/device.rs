@@ -92,8 +92,8 @@ impl DeviceArguments {
         }
     }
 
-    /// Opens the devices of a workload, in the order of their indices. The CPU alone where there is no Vulkan device and
-    /// none was asked for.
+    /// Opens the devices of a workload, in the order of their indices. The CPU alone where there is no Vulkan device
+    /// and none was asked for.
     ///
     /// # Errors
     /// Those of [`DeviceArguments::open`].

@@ -223,8 +223,8 @@ pub struct Info {
     pub work_unit: &'static str,
     /// What can vary. The first axis is what a preset's parts are about.
     pub axes: &'static [Axis],
-    /// Most [`Case::work`] of a case unless the user gives another limit; a case of more becomes a row `skipped`. Absent
-    /// where there is no such limit, nor a flag for it.
+    /// Most [`Case::work`] of a case unless the user gives another limit; a case of more becomes a row `skipped`.
+    /// Absent where there is no such limit, nor a flag for it.
     pub budget: Option<u64>,
     /// True if its inputs may be found by a [`Library`]; otherwise there are no flags for it.
     pub has_library: bool,

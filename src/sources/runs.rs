@@ -89,8 +89,8 @@ pub fn with_traces(runs: &[RecordedRun]) -> Vec<&RecordedRun> {
     if found.is_empty() { runs.iter().collect() } else { found }
 }
 
-/// Of the rows of ray tracing with times, the number of those whose passes were interleaved with those of other rows, and
-/// of all.
+/// Of the rows of ray tracing with times: how many had their passes interleaved with those of other rows, and how many
+/// there are.
 pub fn interleaved_rows(runs: &[RecordedRun]) -> (usize, usize) {
     let rows = runs.iter().flat_map(|run| &run.journal.configurations);
     let turns: Vec<usize> = rows.filter(|r| r.status == Status::Ok && r.verified).map(|r| r.interleaved_with).collect();

@@ -36,8 +36,8 @@ mod tests {
     #[test]
     fn images_above_the_limit_are_refused() {
         let size = Size { width: 1024, height: 1024 };
-        check_limit(size, 7 * 16 << 20).unwrap();
-        let error = check_limit(size, (7 * 16 << 20) - 1).unwrap_err().to_string();
+        check_limit(size, 112 << 20).unwrap();
+        let error = check_limit(size, (112 << 20) - 1).unwrap_err().to_string();
         assert!(error.contains("112 MiB are needed, half of the memory is 111 MiB"), "{error}");
     }
 }

@@ -7,8 +7,8 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 use std::f64::consts::FRAC_PI_2;
 
-/// Largest half side of the image on its plane, which is at distance 1 wherever that allows it: products of the corner's
-/// components are single-precision numbers still.
+/// Largest half side of the image on its plane, which is at distance 1 wherever that allows it: products of the
+/// corner's components are single-precision numbers still.
 const MAX_HALF_SIDE: f64 = 1e9;
 
 /// `View` of `kernels/spheres/scene.wgsl`: 128 bytes. The constants are in it because the shader may have none in its

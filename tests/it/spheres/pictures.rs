@@ -113,8 +113,8 @@ fn near_exact(picture: &[[f32; 4]], exact: &[[f64; 3]]) -> f64 {
     seen.iter().filter(|pair| near(pair)).count() as f64 / seen.len() as f64
 }
 
-/// At edges another sphere is hit, and rounding grows with each reflection at a small sphere: one pixel in a thousand may
-/// be further away, and one in fifty after five trips among a hundred spheres.
+/// At edges another sphere is hit, and rounding grows with each reflection at a small sphere: one pixel in a thousand
+/// may be further away, and one in fifty after five trips among a hundred spheres.
 #[test]
 fn the_picture_is_near_that_in_double_precision() {
     for (spheres, seed, trips, bar) in [(3, 1, 5, 0.999), (20, 7, 5, 0.999), (100, 2, 1, 0.999), (100, 2, 5, 0.98)] {

@@ -147,9 +147,11 @@ pub const CLAIMS: [Claim; 14] = [
         statement: "Half precision makes SIMD twice as fast",
         needs: "a device with arithmetic of half precision, precision f16 and f32; emulated arithmetic has no speed \
                 worth a number",
+        about: About::Gpu,
         cases: pictures::speed,
         renderers: &[],
-        remark: "Taken for twice: at least 1.6 times.",
+        remark: "Taken for twice: at least 1.6 times. No processor here computes in half precision: a GPU's rows are \
+                 judged.",
         ..CLAIM
     },
     Claim {

@@ -3,13 +3,15 @@
 use super::context::{Context, Draft, Side};
 use crate::report::{Cell, Column, Form, Row, Table};
 use crate::sources::spheres::claims::{UNUSABLE_DB, half_pictures, psnr, single_of};
+use crate::sources::spheres::data::Terms;
+use crate::sources::spheres::setting::Setting;
 
 /// The table.
 pub fn table(context: &Context, side: &Side) -> Table {
     let columns = vec![
         Column::of("picture", "RMSE", "", Form::Time),
         Column::of("picture", "PSNR", "dB", Form::Fixed(1)),
-        Column::of("picture", "largest difference", "", Form::Fixed(3)),
+        Column::of("picture", "largest", "", Form::Fixed(3)),
         Column::of("f16", "time", "ms", Form::Time),
         Column::of("f32", "time", "ms", Form::Time),
         Column::of("", "gain", "", Form::Fixed(2)),
@@ -35,12 +37,11 @@ pub fn table(context: &Context, side: &Side) -> Table {
             Cell::number(gain),
             Cell::Words { value: Some(words.to_owned()), published: None },
         ];
-        let keys = [
-            half.scene.to_string(),
-            half.setting.renderer.title().into(),
-            half.setting.switches(),
-            half.terms.in_words(),
-        ];
+        let Terms { width, height, trips, .. } = half.terms;
+        // All rows of this table are of half precision
+        let switches = Setting { half: false, ..half.setting.clone() }.switches();
+        let size = format!("{width}x{height}, {trips} trips");
+        let keys = [half.scene.to_string(), half.setting.renderer.title().into(), switches, size];
         rows.push((half.scene.clone(), Row { keys: keys.into(), cells }));
     }
     rows.sort_by(|a, b| a.0.cmp(&b.0));
