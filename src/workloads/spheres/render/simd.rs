@@ -1,6 +1,6 @@
 //! Several pixels of a row at once: the same operations in the same order on every lane, branches become masks.
 
-use super::super::options::Lanes;
+use super::super::options::{Lanes, Options};
 use super::super::scene::PackedSphere;
 use super::super::view::View;
 use super::mode::{Mode, by_mode};
@@ -205,23 +205,26 @@ impl<S: Simd, F: SimdFloat<S, Element = f32>> Wide<'_, S, F> {
         let mut best = far;
         // Indices as the bits of numbers: they are only chosen from, so that one kind of register is enough
         let mut nearest = self.zero;
-        for (index, sphere) in job.spheres.iter().enumerate() {
-            let oc = self.wide(sphere.center) - origin;
-            let b = oc.dot(d);
-            let q = oc.dot(oc) - self.splat(sphere.radius2);
-            let discriminant = b * b - a * q;
+        let Options { skip_no_hit, skip_no_discriminant, .. } = job.options;
+        for (index, sphere) in (0_u32..).zip(job.spheres) {
+            // From the centre to the origin and so with the other sign, which changes no bit of what follows: one
+            // instruction then reads a number, spreads and subtracts it
+            let co = origin - self.wide(sphere.center);
+            let minus_b = co.dot(d);
+            let q = co.dot(co) - self.splat(sphere.radius2);
+            let discriminant = minus_b * minus_b - a * q;
             let positive = discriminant.simd_gt(self.zero);
-            let (mask, t) = if job.options.skip_no_discriminant && !probe.any(Exit::NoDiscriminant, positive) {
+            let (mask, t) = if skip_no_discriminant && !probe.any(Exit::NoDiscriminant, positive) {
                 probe.exited(Exit::NoDiscriminant);
                 (F::Mask::splat(simd, false), far)
             } else {
                 let root = discriminant.sqrt();
-                let (near, far) = ((b - root) / a, (b + root) / a);
+                let (near, far) = ((-minus_b - root) / a, (root - minus_b) / a);
                 let t = probe.distance(simd, near.simd_gt(self.epsilon).select(near, far));
                 (positive & t.simd_gt(self.epsilon) & t.simd_lt(best), t)
             };
             let mask = probe.nearest(simd, mask);
-            if job.options.skip_no_hit && !probe.any(Exit::NoHit, mask) {
+            if skip_no_hit && !probe.any(Exit::NoHit, mask) {
                 probe.exited(Exit::NoHit);
                 continue;
             }
@@ -230,7 +233,7 @@ impl<S: Simd, F: SimdFloat<S, Element = f32>> Wide<'_, S, F> {
                 let center = self.wide(sphere.center);
                 self.record(hit, mask, origin, d, t, center, self.wide(sphere.color));
             } else {
-                nearest = mask.select(self.splat(f32::from_bits(index as u32)), nearest);
+                nearest = mask.select(self.splat(f32::from_bits(index)), nearest);
             }
         }
         let found = best.simd_lt(far);
