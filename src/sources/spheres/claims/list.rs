@@ -150,6 +150,7 @@ pub const CLAIMS: [Claim; 14] = [
         about: About::Gpu,
         cases: pictures::speed,
         renderers: &[],
+        left_out: pictures::converted,
         remark: "Taken for twice: at least 1.6 times. No processor here computes in half precision: a GPU's rows are \
                  judged.",
         ..CLAIM

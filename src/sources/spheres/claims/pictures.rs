@@ -4,7 +4,7 @@ use super::{Asked, case};
 use crate::compare::judge::{Uncertain, less, less_by};
 use crate::sources::claims::Case;
 use crate::sources::spheres::data::{Data, HalfPicture, Measurement, Place};
-use crate::sources::spheres::setting::Setting;
+use crate::sources::spheres::setting::{Renderer, Setting};
 
 /// Ratio of peak signal to noise in decibels below which a picture counts as unusable.
 pub const UNUSABLE_DB: f64 = 30.0;
@@ -45,6 +45,28 @@ fn of_paper<'a>(asked: &Asked<'a>) -> Vec<&'a HalfPicture> {
     halves
 }
 
+/// True if a software driver converts to and from half precision, which tells nothing about its speed.
+fn is_converted(data: &Data, half: &HalfPicture) -> bool {
+    let is_software = data.devices.get(half.device).is_some_and(|device| device.is_software());
+    half.setting.renderer == Renderer::Gpu && is_software
+}
+
+/// Says that rows of a software driver are not judged, where there are such rows.
+pub fn converted(asked: &Asked) -> Vec<String> {
+    let data = asked.view.data;
+    let halves = of_paper(asked);
+    let rows = halves.iter().filter(|half| is_converted(data, half) && same(data, half, &half.setting).is_some());
+    let names: Vec<&str> =
+        rows.filter_map(|half| data.devices.get(half.device)).map(|device| device.label.as_str()).collect();
+    let said = |label: &&str| {
+        format!(
+            "{} rows of {label} are not judged: it computes on the CPU, by conversions to half precision",
+            names.len()
+        )
+    };
+    names.first().map(said).into_iter().collect()
+}
+
 /// Claim 10a: half precision is twice as fast.
 pub fn speed(asked: &Asked) -> Vec<Case> {
     let of = |half: &&HalfPicture| {
@@ -53,7 +75,8 @@ pub fn speed(asked: &Asked) -> Vec<Case> {
         let numbers = format!("{:.2} times as fast", single.mean_ms / fast.mean_ms);
         Some(case(&half.scene, half.setting.to_string(), less_by(fast.time(), single.time(), TWICE), numbers))
     };
-    of_paper(asked).iter().filter_map(of).collect()
+    let data = asked.view.data;
+    of_paper(asked).iter().filter(|half| !is_converted(data, half)).filter_map(of).collect()
 }
 
 /// Claim 10b: its picture is unusable.

@@ -217,6 +217,25 @@ fn a_driver_on_the_cpu_is_called_so_where_it_matters() {
     assert_eq!(of("10b").basis, Basis::Pictures);
 }
 
+/// A software driver converts to half precision and back: its speed is no device's.
+#[test]
+fn half_precision_of_a_software_driver_is_not_judged() {
+    let judged = |is_software: bool| {
+        let run = with(|b| {
+            if is_software {
+                b.general.provenance.devices[1].info.device_type = DeviceType::SoftwareRasteriser;
+            }
+            rows(b, &[("gpu one-pass exit", 10.0), ("gpu one-pass exit f16", 5.0)]);
+            b.general.rows.last_mut().unwrap().metrics.push(rtbench::record::row::Metric::new("rmse", 0.1));
+        });
+        finding(run, "10a")
+    };
+    assert_eq!(judged(false).verdict, Verdict::Holds);
+    let software = judged(true);
+    assert_eq!(software.verdict, Verdict::NotMeasured);
+    assert!(software.left_out[0].contains("by conversions"), "{:?}", software.left_out);
+}
+
 #[test]
 fn rows_of_unlike_terms_are_not_compared() {
     let unlike = with(|b| {
