@@ -8,10 +8,12 @@ impl DeviceInfo {
         let name = &self.name;
         match self.device_type {
             DeviceType::CpuTwin => {
-                format!("{name}: code of this program on the CPU; these times rank nothing for a GPU")
+                format!("{name}: code of this program on the CPU; these times do not rank algorithms for a GPU")
             }
             DeviceType::SoftwareRasteriser => {
-                format!("{name}: a software rasteriser, which computes on the CPU; these times rank nothing for a GPU")
+                format!(
+                    "{name}: a software rasteriser, which computes on the CPU; these times do not rank algorithms for a GPU"
+                )
             }
             DeviceType::IntegratedGpu => format!("{name}: a GPU that shares the CPU's memory"),
             DeviceType::DiscreteGpu => format!("{name}: a discrete GPU"),

@@ -151,7 +151,7 @@ impl Plan {
 
     /// Work of all cases.
     pub fn work(&self) -> u64 {
-        self.cases.iter().map(|case| case.work).sum()
+        self.cases.iter().fold(0, |sum, case| sum.saturating_add(case.work))
     }
 
     /// Values that occur on each axis in the whole plan, in their order.

@@ -38,7 +38,7 @@ pub fn assign(cases: &[Case], count: usize) -> Vec<usize> {
             units.push((0, Vec::new()));
             units.len() - 1
         });
-        units[unit].0 += case.work;
+        units[unit].0 = units[unit].0.saturating_add(case.work);
         units[unit].1.push(index);
     }
     // Stable: units of equal work keep the plan's order

@@ -61,7 +61,7 @@ fn the_outputs_of_a_sweep_are_consistent() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("deep/run");
     let text = good(&format!("sweep {TINY} --config P,PS --resolution 16,24x20 --out {}", out.display()));
-    assert!(text.contains("CPU twins") && text.contains("do not rank structures for a GPU"), "{text}");
+    assert!(text.contains("on the CPU") && text.contains("do not rank algorithms for a GPU"), "{text}");
 
     let journal = Journal::read(&out.join(FILE_NAME)).unwrap();
     let json: serde_json::Value =

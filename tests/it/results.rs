@@ -219,7 +219,7 @@ fn tables_say_what_the_device_is_good_for() {
     let (_folder, path) = written();
     let mut journal = Journal::read(&path).unwrap();
     let text = summary::terminal(&TRACE, &journal);
-    assert!(text.contains("software rasteriser") && text.contains("do not rank structures for a GPU"), "{text}");
+    assert!(text.contains("software rasteriser") && text.contains("do not rank algorithms for a GPU"), "{text}");
     assert!(text.contains("WRONG") && text.contains("3 hits differ"), "{text}");
     journal.provenance.devices[0].info.device_type = rtbench::device::DeviceType::DiscreteGpu;
     assert!(!summary::terminal(&TRACE, &journal).contains("do not rank"));

@@ -145,6 +145,7 @@ pub fn plan_command() -> Command {
         for id in ids.into_iter().filter(|id| hidden(id.as_str())) {
             command = command.mut_arg(id, |argument| argument.hide(true));
         }
+        command = with_optional(command, info);
         let like = Arg::new("like").long("like").value_name("RUN").value_parser(clap::value_parser!(PathBuf));
         plan = plan.subcommand(command.arg(like.help("A recorded run, whose speed gives an estimate of the time")));
     }

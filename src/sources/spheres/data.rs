@@ -7,7 +7,7 @@ use crate::report::Number;
 use crate::sources::rows::Device;
 use std::collections::HashMap;
 
-/// What rows must have in common to be compared, besides the scene and the precision.
+/// What rows must have in common to be compared, in addition to the scene and the precision.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Terms {
     /// Pixels per row.

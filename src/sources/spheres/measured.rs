@@ -97,7 +97,7 @@ fn read(data: &mut Data, journal: &Journal, row: &Row, (machine, device): (usize
     let scene = SceneKey::of(key.axis("scene"), spheres.unwrap_or(0), key.input("scene"));
     let number = |name: &str| row.metric(None, name).and_then(Value::number);
     let rmse = number("rmse").filter(|_| setting.half);
-    if let Some(rmse) = rmse {
+    if let Some(rmse) = rmse.filter(|_| matches!(row.status, Status::Ok | Status::Skipped)) {
         let largest = number("largest_difference");
         let half =
             HalfPicture { machine, device, scene: scene.clone(), setting: setting.clone(), terms, rmse, largest };

@@ -5,7 +5,7 @@ use crate::report::html::escape;
 use crate::sources::rows::Device;
 use crate::sources::{Rows, Section};
 
-/// What the page is about, and what to beware of.
+/// What the page is about, and warnings.
 pub fn lead(data: Option<&Data>, runs: usize, rows: Rows) -> String {
     let Some(data) = data else {
         return "<p class=\"lead\">The times and metrics that were printed, what follows from them, and what the claims \

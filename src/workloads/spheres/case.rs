@@ -182,7 +182,10 @@ impl SpheresCase {
         let options: Vec<String> = given.map(|(key, value)| format!("{key}={value}")).collect();
         let frames = case.axis("frames");
         Ok(SpheresCase {
-            renderer: Renderer::parse(&format!("{}:{}", case.axis("renderer"), options.join(",")))?,
+            renderer: match options.as_slice() {
+                [] => Renderer::parse(case.axis("renderer"))?,
+                options => Renderer::parse(&format!("{}:{}", case.axis("renderer"), options.join(",")))?,
+            },
             options: Options {
                 algorithm: word("algorithm", &ALGORITHMS, case.axis("algorithm"))?,
                 exit_on_miss: on("exit_on_miss")?,

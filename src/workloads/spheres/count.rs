@@ -5,7 +5,7 @@ use std::ops::AddAssign;
 /// Sums over the pixels of a frame.
 ///
 /// A path is live until its first miss. `rays`, `hits` and tests of live rays are the same for every renderer and every
-/// switch; the other counters say what a renderer does besides.
+/// switch; the other counters say what a renderer does in addition.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Live rays of each trip; as long as `hits`.

@@ -7,7 +7,7 @@ use super::case::SpheresCase;
 use super::gpu::GpuRenderer;
 use super::input::SpheresInput;
 use super::options::Precision;
-use super::references::Shot;
+use super::references::{Shot, in_bands};
 use super::render::{compare, half};
 use super::view::View;
 use super::{memory, pictures, verify};
@@ -49,12 +49,15 @@ impl<'a> HalfRun<'a> {
         }
     }
 
-    /// Writes the picture and its difference from single precision.
+    /// Writes the picture and its difference from single precision, those of the scene's first row of half precision.
     fn write(&self, case: &SpheresCase, image: &[[f32; 4]], single: &[[f32; 4]]) -> Result<()> {
         let file = |suffix: &str| {
             let name = format!("{}-half{suffix}", self.input.name);
             self.input.context.out.join(FOLDER).join(format!("{}.png", names::distinct_slug(&name)))
         };
+        if file("").is_file() {
+            return Ok(());
+        }
         pictures::write(&file(""), case.size, image)?;
         pictures::write(&file("-difference"), case.size, &compare::difference(image, single, BRIGHTER))
     }
@@ -79,9 +82,10 @@ impl Run for HalfRun<'_> {
         let SpheresInput { scene, spheres, references, context, .. } = self.input;
         context.check_interrupt()?;
         let (algorithm, shot) = (case.options.algorithm, shot(&case, 0));
-        let single = references.borrow_mut().of(scene, spheres, algorithm, shot);
+        let single = references.borrow_mut().of(scene, spheres, (algorithm, shot), context.interrupted)?;
         let view = shot.view(scene);
-        let rounded = half::render(spheres, &view, algorithm);
+        let rows = |rows| half::rows(spheres, &view, algorithm, rows);
+        let rounded = in_bands(view.height, context.interrupted, rows)?.concat();
         let (image, check) = match self.device {
             None => {
                 let check = verify::half(&rounded, None, &single.image);
@@ -124,7 +128,9 @@ impl Run for HalfRun<'_> {
         let timed = renderer.last()?;
         let again = renderer.render(&view)?;
         let first = compare::compare(&timed, &again, case.size.width as usize);
-        let problem = first.map(|first| format!("the last timed frame differs in {} pixels from itself", first.count));
+        let problem = first.map(|first| {
+            format!("the last timed frame differs in {} pixels from the same frame rendered again", first.count)
+        });
         Ok(Verdict { problem, ..Verdict::default() })
     }
 }

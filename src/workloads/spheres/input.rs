@@ -11,7 +11,7 @@ use super::{half, pictures};
 use crate::device::{Device, Feature};
 use crate::error::{Error, Result};
 use crate::harness::workload::{Case, Context, Input, Run};
-use crate::record::row::{Input as InputRecord, Key, Metric};
+use crate::record::row::{Input as InputRecord, Key, Metric, Row, Status};
 use std::cell::RefCell;
 use std::collections::HashMap;
 
@@ -46,6 +46,13 @@ impl<'a> SpheresInput<'a> {
     }
 }
 
+impl SpheresInput<'_> {
+    /// What decides how many rays and hits a scene has.
+    pub(super) fn shape_of(case: &Case) -> String {
+        ["trips", "resolution", "frames"].map(|axis| case.axis(axis)).join(" ")
+    }
+}
+
 impl Input for SpheresInput<'_> {
     fn records(&self) -> Vec<InputRecord> {
         let metrics = vec![Metric::new("spheres", self.spheres.len())];
@@ -55,6 +62,20 @@ impl Input for SpheresInput<'_> {
     fn key(&self, case: &Case) -> Key {
         let inputs = [("scene".to_owned(), self.scene.hash.clone())].into();
         Key { workload: WORKLOAD.into(), axes: case.axes.clone(), inputs }
+    }
+
+    fn remember(&self, case: &Case, row: &Row) {
+        // A GPU's counts may be others
+        if row.status != Status::Ok || case.axis("renderer") == Renderer::Gpu.name() || case.axis("precision") != "f32"
+        {
+            return;
+        }
+        let counts = |name: &str| -> Vec<u64> {
+            let of_bounce = |bounce: usize| row.metric(Some(&format!("bounce-{bounce}")), name)?.integer();
+            (1..).map_while(of_bounce).collect()
+        };
+        let totals = (case.group.clone(), counts("rays"), counts("hits"));
+        self.totals.borrow_mut().entry(SpheresInput::shape_of(case)).or_insert(totals);
     }
 
     fn build(&mut self, case: &Case) -> Result<u64> {

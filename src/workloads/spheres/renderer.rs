@@ -53,7 +53,7 @@ impl Renderer {
     /// # Errors
     /// As [`Renderer::parse_all`].
     pub fn parse(text: &str) -> Result<Renderer> {
-        let (name, options) = text.split_once(':').unwrap_or((text, ""));
+        let (name, options) = text.split_once(':').map_or((text, None), |(name, options)| (name, Some(options)));
         let keys: &[&str] = match name {
             "sequential" | "gpu" => &[],
             "threads" => &["threads"],
@@ -65,7 +65,7 @@ impl Renderer {
             }
         };
         let mut given = Given::default();
-        for option in options.split(',').filter(|option| !option.is_empty()) {
+        for option in options.iter().flat_map(|options| options.split(',')) {
             given.add(name, keys, option)?;
         }
         let Given { lanes, level, threads } = given;

@@ -61,9 +61,12 @@ fn the_reference_is_held_to_the_exact_model() {
         exact[..wrong].iter_mut().for_each(|pixel| pixel[2] = 0.5);
         exact
     };
-    assert!(verify::exact(&reference, &exact(10), 2).ok);
-    let check = verify::exact(&reference, &exact(11), 2);
+    assert!(verify::exact(&reference, &exact(10), 2, 100).ok);
+    let check = verify::exact(&reference, &exact(11), 2, 100);
     assert!(!check.ok && check.message.contains("in 11 of 1000 pixels"), "{check:?}");
+    // Many small spheres have edges everywhere
+    assert!(verify::exact(&reference, &exact(100), 2, 100_000).ok);
+    assert!(!verify::exact(&reference, &exact(101), 2, 100_000).ok);
 }
 
 #[test]
@@ -71,12 +74,19 @@ fn the_algorithms_may_differ_by_rounding_only() {
     let one = picture();
     let mut two = one.clone();
     two[5][0] += 0.5 * ALGORITHMS_DIFFER;
-    assert!(verify::algorithms(&one, &two).ok);
+    assert!(verify::algorithms(&one, &two, 5).ok);
     two[5][0] += 2.0 * ALGORITHMS_DIFFER;
-    assert!(!verify::algorithms(&one, &two).ok);
+    assert!(!verify::algorithms(&one, &two, 5).ok);
+    // More factors along a long path, brighter light
+    assert!(verify::algorithms(&one, &two, 64).ok);
+    let bright = |picture: &[[f32; 4]]| picture.iter().map(|p| p.map(|c| 50.0 * c)).collect::<Vec<_>>();
+    assert!(!verify::algorithms(&bright(&one), &two, 5).ok);
+    let mut rounded = bright(&one);
+    rounded[5][1] += 10.0 * ALGORITHMS_DIFFER;
+    assert!(verify::algorithms(&bright(&one), &rounded, 5).ok);
     two[5][0] = f32::NAN;
-    assert!(!verify::algorithms(&one, &two).ok);
-    assert!(!verify::algorithms(&one, &one[1..]).ok);
+    assert!(!verify::algorithms(&one, &two, 64).ok);
+    assert!(!verify::algorithms(&one, &one[1..], 5).ok);
 }
 
 /// A device's half precision may round elsewhere, but must be half precision's picture.

@@ -67,6 +67,9 @@ fn renderers_are_read_as_they_are_written() {
         ("simd:lanes", "'' is no value"),
         ("simd:level=sse3", "one of sse2, avx2, avx512, neon"),
         ("simd:lanes=4,lanes=8", "given twice"),
+        ("simd:", "simd has no option ''"),
+        ("simd:lanes=4,", "simd has no option ''"),
+        ("sequential:", "sequential has no options"),
         ("threads:threads=0", "1 to 1024"),
         ("threads:threads=99999", "1 to 1024"),
     ] {
@@ -214,6 +217,50 @@ fn what_cannot_be_is_a_row_with_its_reason() {
     let message = &by_size("64x32").message;
     assert!(message.starts_with("too large: ") && message.contains("409600 ray/sphere tests"), "{message}");
     assert!(message.contains("the budget is 6400"), "{message}");
+}
+
+/// A file that cannot be read ends nothing but its own rows; alone it is the error.
+#[test]
+fn a_broken_file_is_rows_and_no_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let broken = folder.path().join("broken.json");
+    std::fs::write(&broken, "{\"camera\": 3}").unwrap();
+    let broken = broken.to_str().unwrap();
+    let mut both = request(&[("renderer", "sequential")]);
+    both.values.insert("scene".into(), vec![broken.into(), "random20".into()]);
+    let out = tempfile::tempdir().unwrap();
+    let journal = measured(&Spheres::default(), &both, out.path());
+    let of_scene = |scene: &str| journal.rows.iter().find(|row| row.key.axis("scene") == scene).unwrap();
+    assert_eq!(of_scene("random20").status, Status::Ok);
+    assert_eq!(of_scene(broken).status, Status::Failed);
+    assert!(of_scene(broken).message.contains("broken.json:1"), "{}", of_scene(broken).message);
+    let absent = Plan::new(&SPHERES, &request(&[("renderer", "simd"), ("scene", "nowhere.json")])).unwrap_err();
+    assert!(absent.to_string().contains("nowhere.json"), "{absent}");
+}
+
+/// What is far from the usual scenes is verified as well: very many spheres, bright light, long paths.
+#[test]
+fn unusual_scenes_are_verified() {
+    let file = include_str!("../../../scenes/spheres/default.json");
+    let mut scene: serde_json::Value = serde_json::from_str(file).unwrap();
+    scene["lightData"]["directionalLightColor"] = serde_json::json!([50.0, 40.0, 30.0]);
+    scene["rendering"] = serde_json::json!({"intensity": 1.0});
+    for sphere in scene["spheres"].as_array_mut().unwrap() {
+        sphere["color"] = serde_json::json!([1.0, 1.0, 1.0]);
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let bright = folder.path().join("bright.json");
+    std::fs::write(&bright, scene.to_string()).unwrap();
+    for (scene, trips) in
+        [("random:spheres=20000,seed=3", "5"), (bright.to_str().unwrap(), "5"), (bright.to_str().unwrap(), "64")]
+    {
+        let mut request = request(&[("renderer", "simd-threads"), ("trips", trips), ("resolution", "16x9")]);
+        request.values.insert("scene".into(), vec![scene.into()]);
+        request.frames = Some(1);
+        let out = tempfile::tempdir().unwrap();
+        let journal = measured(&Spheres::default(), &request, out.path());
+        assert_eq!(journal.rows[0].status, Status::Ok, "{scene} {trips}: {}", journal.rows[0].message);
+    }
 }
 
 /// Half precision on the CPU: its error is measured, its speed is not.

@@ -33,7 +33,7 @@ pub struct Claim {
     pub renderers: &'static [Renderer],
     /// What is not judged, with the reason.
     pub left_out: fn(&Asked) -> Vec<String>,
-    /// What to beware of in its cases.
+    /// A warning about its cases.
     pub remark: &'static str,
 }
 
@@ -139,7 +139,7 @@ pub const CLAIMS: [Claim; 14] = [
         needs: "simd:lanes=4, first and last version, on default, random20 and random100",
         cases: cases::first_to_last,
         renderers: &[Renderer::Simd],
-        remark: "Judged by the greatest gain of the three scenes: at least 15 times.",
+        remark: "Judged by the greatest gain of the three scenes: more than 15 times, with the margin.",
         ..CLAIM
     },
     Claim {

@@ -9,6 +9,7 @@ use super::super::view::View;
 use super::vector::V3;
 use glam::Vec3;
 use half::f16;
+use std::ops::Range;
 
 type Half = V3<f16>;
 
@@ -44,6 +45,11 @@ struct Step {
 
 /// Linear RGBA, rows from the top. A colour that overflowed is infinite or NaN.
 pub fn render(spheres: &[PackedSphere], view: &View, algorithm: Algorithm) -> Vec<[f32; 4]> {
+    rows(spheres, view, algorithm, 0..view.height)
+}
+
+/// Some rows of the picture.
+pub fn rows(spheres: &[PackedSphere], view: &View, algorithm: Algorithm, rows: Range<u32>) -> Vec<[f32; 4]> {
     let sphere = |s: &PackedSphere| HalfSphere {
         center: rounded(s.center),
         radius2: f16::from_f32(s.radius2),
@@ -51,7 +57,7 @@ pub fn render(spheres: &[PackedSphere], view: &View, algorithm: Algorithm) -> Ve
     };
     let spheres: Vec<HalfSphere> = spheres.iter().map(sphere).collect();
     let half = HalfView::new(view);
-    let pixels = (0..view.height).flat_map(|y| (0..view.width).map(move |x| (x, y)));
+    let pixels = rows.flat_map(|y| (0..view.width).map(move |x| (x, y)));
     let color = |(x, y)| {
         let c = half.pixel(&spheres, x, y, view.trips, algorithm).map_to(f16::to_f32);
         [c[0], c[1], c[2], 1.0]

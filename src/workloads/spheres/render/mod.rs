@@ -1,7 +1,7 @@
 //! Renderers on the CPU, and what their pictures are held to.
 //!
 //! Each kernel is one text with a [`probe::Probe`]: a silent one where a frame is timed, one that counts and plants
-//! faults where it is watched. [`reference`](mod@reference) says the same picture plainly, [`exact`] in double
+//! faults where it is watched. [`reference`](mod@reference) makes the same picture by plain code, [`exact`] in double
 //! precision and [`half`] in half precision; [`compare`](mod@compare) tells pictures apart.
 
 pub mod compare;

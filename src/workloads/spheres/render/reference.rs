@@ -1,4 +1,4 @@
-//! The picture, said plainly: each operation in the order that all renderers keep. Nothing here is fast, and nothing is
+//! The picture by plain code: each operation in the order that all renderers keep. Nothing here is fast, and nothing is
 //! shared with the renderers.
 
 use super::super::count::Counts;
@@ -6,6 +6,7 @@ use super::super::options::Algorithm;
 use super::super::scene::PackedSphere;
 use super::super::view::View;
 use glam::Vec3;
+use std::ops::Range;
 
 /// A picture and how its paths went.
 pub struct Reference {
@@ -29,9 +30,14 @@ struct Trip {
 
 /// Renders a frame with all trips of all paths.
 pub fn render(spheres: &[PackedSphere], view: &View, algorithm: Algorithm) -> Reference {
+    rows(spheres, view, algorithm, 0..view.height)
+}
+
+/// Renders some rows of a frame.
+pub fn rows(spheres: &[PackedSphere], view: &View, algorithm: Algorithm, rows: Range<u32>) -> Reference {
     let trips = view.trips as usize;
     let mut result = Reference { image: Vec::new(), hits: Vec::new(), counts: Counts::new(trips), hits_again: 0 };
-    for y in 0..view.height {
+    for y in rows {
         for x in 0..view.width {
             let (path, again) = path(spheres, view, x, y);
             let color = match algorithm {

@@ -147,11 +147,13 @@ pub fn colour<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f64; 3], D:
     deserializer.deserialize_seq(Three(is_share, |_| None))
 }
 
+/// The least radius: single precision has its square as a normal number.
+const MIN_RADIUS: f64 = 1.1e-19;
+
 /// A radius of which single precision has the square.
 pub fn radius<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     let check = |radius: f64| {
-        let single = radius as f32;
-        let wrong = !(single > 0.0 && radius <= MAX && (single * single).is_normal());
+        let wrong = !(radius >= MIN_RADIUS && radius <= MAX);
         wrong.then(|| format!("a radius of {radius:e} is not between 1.1e-19 and 1e18"))
     };
     Number(check).deserialize(deserializer)
