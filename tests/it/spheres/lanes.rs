@@ -51,23 +51,54 @@ fn a_broken_lane_is_found_at_one_of_its_pixels() {
     }
 }
 
+/// Where the exit is off, nothing asks.
+fn without(exit: Exit, options: Options) -> Options {
+    match exit {
+        Exit::Miss => Options { exit_on_miss: false, ..options },
+        Exit::NoHit => Options { skip_no_hit: false, ..options },
+        Exit::NoDiscriminant => Options { skip_no_discriminant: false, ..options },
+    }
+}
+
+/// Every exit with both algorithms and both kinds of hits.
+fn exits() -> Vec<(Exit, Options)> {
+    let mut all = Vec::new();
+    for exit in [Exit::Miss, Exit::NoHit, Exit::NoDiscriminant] {
+        for algorithm in [Algorithm::TwoPass, Algorithm::OnePass] {
+            all.extend([HitRecord::InLoop, HitRecord::Index].map(|hit| (exit, Options { algorithm, hit, ..OPTIONS })));
+        }
+    }
+    all
+}
+
 #[test]
 fn all_for_any_in_an_exit_is_found() {
     for renderer in support::simd() {
-        for exit in [Exit::Miss, Exit::NoHit, Exit::NoDiscriminant] {
-            for hit in [HitRecord::InLoop, HitRecord::Index] {
-                let options = Options { hit, ..OPTIONS };
-                let fault = Fault { lane: 0, kind: FaultKind::AllForAny(exit) };
+        for (exit, options) in exits() {
+            let fault = Fault { lane: 0, kind: FaultKind::AllForAny(exit) };
+            let (difference, counts) = found(renderer, options, fault);
+            let what = format!("{renderer:?} {options:?} {exit:?}");
+            assert!(difference.is_some() && counts, "not found: {what}");
+            assert_eq!(found(renderer, without(exit, options), fault), (None, false), "{what}");
+        }
+    }
+}
+
+/// An exit that one lane alone needs, of every lane of every width: what differs are pixels of that lane and no others.
+#[test]
+fn an_exit_that_overlooks_a_lane_is_found_at_its_pixels() {
+    for renderer in support::simd() {
+        let Renderer::Simd(lanes, _) = renderer else { unreachable!() };
+        for lane in 0..lanes.count() {
+            for (exit, options) in exits() {
+                let fault = Fault { lane, kind: FaultKind::Overlook(exit) };
                 let (difference, counts) = found(renderer, options, fault);
-                let what = format!("{renderer:?} {exit:?}");
-                assert!(difference.is_some() && counts, "not found: {what}");
-                // Where the exit is off, nothing asks
-                let off = match exit {
-                    Exit::Miss => Options { exit_on_miss: false, ..options },
-                    Exit::NoHit => Options { skip_no_hit: false, ..options },
-                    Exit::NoDiscriminant => Options { skip_no_discriminant: false, ..options },
-                };
-                assert_eq!(found(renderer, off, fault), (None, false), "{what}");
+                let what = format!("{renderer:?} {options:?} lane {lane} {exit:?}");
+                let difference = difference.unwrap_or_else(|| panic!("not found: {what}"));
+                assert_eq!(difference.x % lanes.count(), lane, "{what}: {difference:?}");
+                // Paths that end too early have fewer rays; a sphere that is left out may uncover another one
+                assert!(counts || exit != Exit::Miss, "{what}");
+                assert_eq!(found(renderer, without(exit, options), fault), (None, false), "{what}");
             }
         }
     }
