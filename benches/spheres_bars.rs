@@ -220,14 +220,17 @@ fn control(setting: &Setting, frames: usize) {
     frame();
     println!("ready");
     std::io::stdin().read_exact(&mut [0]).expect("a byte");
-    (0..frames).for_each(|_| drop(frame()));
+    for _ in 0..frames {
+        frame();
+    }
     println!("done");
 }
 
 /// The GPU's renderer against threads; true without a Vulkan device, too.
 fn gpu(setting: &Setting, pool: &rayon::ThreadPool) -> bool {
-    let opened = choose(&adapters(), &Selector::Best);
-    let device = match opened.and_then(|best| VulkanDevice::open(best, VulkanOptions::default())) {
+    let adapters = adapters();
+    let best = choose(&adapters, &Selector::Best);
+    let device = match best.and_then(|best| VulkanDevice::open(best, VulkanOptions::default())) {
         Ok(device) => device,
         Err(error) => {
             println!("gpu: not judged, there is no Vulkan device ({error})");
