@@ -1,21 +1,26 @@
-//! The bars of the sphere tracer's renderers on the CPU, as ratios of interleaved rounds in one run:
+//! The bars of the sphere tracer's renderers, as ratios of interleaved rounds in one run:
 //! `cargo bench --bench spheres_bars`. It ends with an error where one is missed.
 //!
-//! Those of two threads are judged in a run in which two threads of independent work do 1.9 times what one does. The
-//! scalar renderer is compared with `spheres_cpp/tracer.cpp`, built here by g++ where there is one.
+//! That of two threads is judged in a run in which two processes of one thread each do 1.9 times the work of one in the
+//! same time; the processes are this program with `--control=FRAMES`. The scalar renderer is compared with
+//! `spheres_cpp/tracer.cpp`, built here by g++ where there is one, and the GPU's with threads where there is a Vulkan
+//! device.
 
 mod common;
 
 use common::{median, ratio};
+use rtbench::device::VulkanDevice;
+use rtbench::device::vulkan::{Selector, VulkanOptions, adapters, choose};
 use rtbench::workloads::size::Size;
+use rtbench::workloads::spheres::gpu::GpuRenderer;
 use rtbench::workloads::spheres::options::{Algorithm, HitRecord, Lanes, Options, Renderer};
 use rtbench::workloads::spheres::render::CpuRenderer;
 use rtbench::workloads::spheres::render::compare::compare;
 use rtbench::workloads::spheres::scene::{PackedSphere, Scene};
 use rtbench::workloads::spheres::view::View;
-use std::io::Write;
+use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::time::Instant;
 
 /// Milliseconds of one frame.
@@ -53,6 +58,9 @@ fn main() {
         true => Setting { scene, spheres, size: Size { width: 480, height: 270 }, rounds: 15 },
         false => Setting { scene, spheres, size: Size { width: 16, height: 9 }, rounds: 3 },
     };
+    if let Some(frames) = std::env::args().find_map(|arg| arg.strip_prefix("--control=")?.parse().ok()) {
+        return control(&setting, frames);
+    }
     let pool = common::pool(0);
     let mut met = true;
     for (trips, bar) in [(5, 3.5), (1, 6.0)] {
@@ -60,6 +68,8 @@ fn main() {
     }
     met &= threads(&setting, &pool, if measuring { 10 } else { 1 });
     met &= cpp(&setting, &pool);
+    let large = if measuring { Size { width: 640, height: 360 } } else { setting.size };
+    met &= gpu(&Setting { size: large, ..setting }, &pool);
     if measuring && !met {
         std::process::exit(1);
     }
@@ -137,20 +147,25 @@ fn threads(setting: &Setting, pool: &rayon::ThreadPool, tries: usize) -> bool {
         println!("simd-threads: not judged, the bar is for 2 threads and there are {count}");
         return true;
     }
+    println!(
+        "simd-threads on 2 threads against simd on one: judged in the first try in which two processes of one thread \
+         each do at least 1.9 times the work of one in the same time"
+    );
     for number in 1..=tries {
         println!("threads, try {number} of at most {tries}");
         let simd_threads = Renderer::SimdThreads(Lanes::Eight, None, 0);
         let mut contestants = [
             contestant("simd, 8 lanes", SIMD8, BEST, setting, 5, pool),
             contestant("simd-threads, 8 lanes", simd_threads, BEST, setting, 5, pool),
-            ("control: one, one thread".to_owned(), Box::new(|| at_once(setting, pool, 1)) as _),
-            ("control: two at once, one thread each".to_owned(), Box::new(|| at_once(setting, pool, 2)) as _),
+            ("control: one process".to_owned(), Box::new(|| at_once(1)) as _),
+            ("control: two processes at once".to_owned(), Box::new(|| at_once(2)) as _),
         ];
         let times = times(&mut contestants, setting.rounds);
         let doubled: Vec<f64> = times[2].iter().map(|time| time * 2.0).collect();
-        let quiet = judge("control: work of two / of one", &doubled, &times[3], |r| r >= 1.9, "at least 1.9");
+        let quiet = judge("control: rate of two / of one", &doubled, &times[3], |r| r >= 1.9, "at least 1.9");
         let met = judge("simd / simd-threads", &times[0], &times[1], |r| r >= 1.8, "at least 1.8, where quiet");
         if quiet {
+            println!("  simd-threads: judged, in this try");
             return met;
         }
     }
@@ -158,18 +173,84 @@ fn threads(setting: &Setting, pool: &rayon::ThreadPool, tries: usize) -> bool {
     true
 }
 
-/// Milliseconds until `count` threads of `pool` have each rendered a frame of their own.
-fn at_once(setting: &Setting, pool: &rayon::ThreadPool, count: usize) -> f64 {
-    let view = setting.view(5);
-    let renderer = CpuRenderer::new(SIMD8, BEST, pool).expect("a renderer");
-    let mut images = vec![vec![[1.0; 4]; (view.width * view.height) as usize]; count];
+/// A process of the control that waits for its start.
+struct Waiting {
+    child: Child,
+    start: ChildStdin,
+    end: BufReader<ChildStdout>,
+}
+
+impl Waiting {
+    fn new() -> Waiting {
+        let mut command = Command::new(std::env::current_exe().expect("a path of this program"));
+        let (frames, measuring) = if common::measuring() { (20, Some("--bench")) } else { (1, None) };
+        command.arg(format!("--control={frames}")).args(measuring);
+        let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("a process");
+        let start = child.stdin.take().expect("a pipe");
+        let mut waiting = Waiting { start, end: BufReader::new(child.stdout.take().expect("a pipe")), child };
+        waiting.line("ready");
+        waiting
+    }
+
+    /// Waits for a line of the process.
+    fn line(&mut self, expected: &str) {
+        let mut line = String::new();
+        self.end.read_line(&mut line).expect("a line of the control");
+        assert_eq!(line.trim(), expected, "the control failed");
+    }
+}
+
+/// Milliseconds until `count` processes have each rendered their frames; how long they take to start is left out.
+fn at_once(count: usize) -> f64 {
+    let mut processes: Vec<Waiting> = (0..count).map(|_| Waiting::new()).collect();
     let start = Instant::now();
-    pool.scope(|scope| {
-        for image in &mut images {
-            scope.spawn(|_| renderer.render(&setting.spheres, &view, image));
+    processes.iter_mut().for_each(|process| process.start.write_all(b"!").expect("a process that reads"));
+    processes.iter_mut().for_each(|process| process.line("done"));
+    let time = start.elapsed().as_secs_f64() * 1e3;
+    for mut process in processes {
+        assert!(process.child.wait().expect("an end").success(), "the control failed");
+    }
+    time
+}
+
+/// The control's process: after a first frame it waits for a byte, then it renders so many frames on its one thread.
+fn control(setting: &Setting, frames: usize) {
+    let pool = common::pool(1);
+    let (_, mut frame) = contestant("control", SIMD8, BEST, setting, 5, &pool);
+    frame();
+    println!("ready");
+    std::io::stdin().read_exact(&mut [0]).expect("a byte");
+    for _ in 0..frames {
+        frame();
+    }
+    println!("done");
+}
+
+/// The GPU's renderer against threads; true without a Vulkan device, too.
+fn gpu(setting: &Setting, pool: &rayon::ThreadPool) -> bool {
+    let adapters = adapters();
+    let best = choose(&adapters, &Selector::Best);
+    let device = match best.and_then(|best| VulkanDevice::open(best, VulkanOptions::default())) {
+        Ok(device) => device,
+        Err(error) => {
+            println!("gpu: not judged, there is no Vulkan device ({error})");
+            return true;
         }
-    });
-    start.elapsed().as_secs_f64() * 1e3
+    };
+    let Size { width, height } = setting.size;
+    println!("gpu on {} against threads, {width} x {height}, 5 trips: frame times are judged", device.info().name);
+    let view = setting.view(5);
+    let renderer = GpuRenderer::new(&device, &setting.spheres, BEST, setting.size, 5).expect("a renderer");
+    let frame = || {
+        let times = renderer.time(&[view], &|| false).expect("a frame");
+        times[0].wall_ns as f64 / 1e6
+    };
+    let mut contestants = [
+        contestant("threads", Renderer::Threads(0), BEST, setting, 5, pool),
+        ("gpu".to_owned(), Box::new(frame) as Box<dyn FnMut() -> f64>),
+    ];
+    let times = times(&mut contestants, setting.rounds);
+    judge("gpu / threads", &times[1], &times[0], |r| r <= 2.0, "at most 2")
 }
 
 /// The scalar renderer against C++; true without g++, too.

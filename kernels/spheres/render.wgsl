@@ -5,10 +5,11 @@
 //!slot algorithm
 //!slot store
 
-// What a pixel gets: its colour, and how many rays of its path hit before the first miss.
+// What a pixel gets: its colour, how many rays of its path hit before the first miss, and how many searches were made.
 struct Path {
     color: real3,
     hits: u32,
+    searches: u32,
 }
 
 @compute @workgroup_size(GROUP_SIDE, GROUP_SIDE)

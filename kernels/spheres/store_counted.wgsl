@@ -1,9 +1,9 @@
-// Output of the counting kernels: 20 bytes a pixel.
+// Output of the counting kernels: 24 bytes a pixel, the last 8 of them the number of hits and of searches.
 
 @group(0) @binding(2) var<storage, read_write> pixels: array<vec4<f32>>;
-@group(0) @binding(3) var<storage, read_write> hits_of: array<u32>;
+@group(0) @binding(3) var<storage, read_write> work_of: array<vec2<u32>>;
 
 fn store(index: u32, path: Path) {
     pixels[index] = vec4<f32>(vec3<f32>(path.color), band.view.one);
-    hits_of[index] = path.hits;
+    work_of[index] = vec2<u32>(path.hits, path.searches);
 }

@@ -7,10 +7,11 @@ fn follow(first: Ray) -> Path {
     var hits: array<Hit, TRIPS>;
     var ray = first;
     var hit = no_hit();
-    var path = Path(real3(0.0), 0u);
+    var path = Path(real3(0.0), 0u, 0u);
     var live = true;
     for (var trip = 0u; trip < TRIPS; trip += 1u) {
         let found = search(ray, &hit);
+        path.searches += 1u;
         live = live && found;
         if (EXIT_ON_MISS && !live) {
             break;

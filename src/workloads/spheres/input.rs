@@ -25,6 +25,8 @@ pub struct SpheresInput<'a> {
     pub(super) name: String,
     pub(super) scene: Scene,
     pub(super) spheres: Vec<PackedSphere>,
+    /// What the GPU gets: the same, unless a test makes one of them wrong.
+    pub(super) on_gpu: Vec<PackedSphere>,
     /// What pictures are compared with.
     pub(super) references: RefCell<References>,
     /// What was counted first, by the axis values that decide it: all renderers must count the same.
@@ -34,15 +36,24 @@ pub struct SpheresInput<'a> {
 }
 
 impl<'a> SpheresInput<'a> {
-    /// Loads the scene of some cases.
+    /// Loads the scene of some cases. Tests plant a fault, or name a sphere that is wrong on the GPU.
     ///
     /// # Errors
     /// Those of [`Scene::load`].
-    pub fn open(cases: &[Case], context: &'a Context<'a>, fault: Option<Fault>) -> Result<SpheresInput<'a>> {
+    pub fn open(
+        cases: &[Case],
+        context: &'a Context<'a>,
+        fault: Option<Fault>,
+        wrong_sphere: Option<usize>,
+    ) -> Result<SpheresInput<'a>> {
         let name = cases.first().map_or(String::new(), |case| case.input.clone());
         let scene = Scene::load(&name)?;
         let (spheres, references) = (scene.packed(), RefCell::new(References::default()));
-        Ok(SpheresInput { context, name, scene, spheres, references, totals: RefCell::default(), fault })
+        let mut on_gpu = spheres.clone();
+        if let Some(sphere) = wrong_sphere.and_then(|index| on_gpu.get_mut(index)) {
+            sphere.radius2 *= 2.0;
+        }
+        Ok(SpheresInput { context, name, scene, spheres, on_gpu, references, totals: RefCell::default(), fault })
     }
 }
 

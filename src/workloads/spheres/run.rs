@@ -2,7 +2,7 @@
 
 use super::case::SpheresCase;
 use super::count::Counts;
-use super::gpu::GpuRenderer;
+use super::gpu::{Counted, GpuRenderer};
 use super::input::SpheresInput;
 use super::options::{Algorithm, Options};
 use super::references::{SMALL, Shot};
@@ -82,8 +82,8 @@ impl<'a> SpheresRun<'a> {
             }
             Prepared::Gpu { options, .. } => {
                 let ends = options.exit_on_miss;
-                let (image, hits) = self.gpu(shape(view))?.count(view)?;
-                let counts = work::of_hits(&hits, view.trips, ends);
+                let Counted { image, hits, searches } = self.gpu(shape(view))?.count(view)?;
+                let counts = work::of_pixels(&hits, &searches, view.trips, ends);
                 Ok((image, hits, counts))
             }
         }
@@ -97,7 +97,7 @@ impl<'a> SpheresRun<'a> {
         match of_shape.entry(shape) {
             Entry::Occupied(entry) => Ok(entry.into_mut()),
             Entry::Vacant(entry) => {
-                Ok(entry.insert(GpuRenderer::new(device, &self.input.spheres, *options, shape.0, shape.1)?))
+                Ok(entry.insert(GpuRenderer::new(device, &self.input.on_gpu, *options, shape.0, shape.1)?))
             }
         }
     }
@@ -169,7 +169,7 @@ impl Run for SpheresRun<'_> {
             Prepared::Cpu { .. } => Ok(Vec::new()),
             // The kernel is the same for every size
             Prepared::Gpu { device, options, .. } => {
-                Ok(vec![GpuRenderer::new(device, &self.input.spheres, *options, SMALL, trips)?.kernel()])
+                Ok(vec![GpuRenderer::new(device, &self.input.on_gpu, *options, SMALL, trips)?.kernel()])
             }
         }
     }

@@ -4,14 +4,14 @@ use super::count::Counts;
 use crate::record::row::Metric;
 use crate::record::statistics::round;
 
-/// The counts of a renderer without vectors, from the live hits of each pixel; `ends` if a path ends at its first miss.
-pub fn of_hits(hits: &[u32], trips: u32, ends: bool) -> Counts {
+/// The counts of a renderer without vectors, from the live hits and the searches of each pixel. `ends` if a path ends at
+/// its first miss: then those of fewer searches than `trips` ended before their last one.
+pub fn of_pixels(hits: &[u32], searches: &[u32], trips: u32, ends: bool) -> Counts {
     let mut counts = Counts::new(trips as usize);
-    for &hits in hits {
-        counts.add_path(hits as usize);
-        let live = hits.saturating_add(1).min(trips);
-        counts.searches += u64::from(if ends { live } else { trips });
-        counts.exits_on_miss += u64::from(ends && live < trips);
+    hits.iter().for_each(|&hits| counts.add_path(hits as usize));
+    for &searches in searches {
+        counts.searches += u64::from(searches);
+        counts.exits_on_miss += u64::from(ends && searches < trips);
     }
     counts
 }

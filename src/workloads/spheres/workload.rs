@@ -23,10 +23,12 @@ const BUDGET: u64 = 1_000_000_000_000;
 pub struct Spheres {
     /// Planted into every vector renderer; absent outside of tests.
     pub fault: Option<Fault>,
+    /// The sphere whose radius the GPU gets too large; absent outside of tests.
+    pub wrong_sphere: Option<usize>,
 }
 
 /// The one that the command line offers.
-pub static SPHERES: Spheres = Spheres { fault: None };
+pub static SPHERES: Spheres = Spheres { fault: None, wrong_sphere: None };
 
 const fn axis(name: &'static str, value_name: &'static str, help: &'static str) -> Axis {
     Axis { name, value_name, help, is_flag: true, in_label: true }
@@ -169,7 +171,7 @@ impl Workload for Spheres {
     }
 
     fn open<'a>(&'a self, cases: &[Case], context: &'a Context<'a>) -> Result<Box<dyn Input + 'a>> {
-        Ok(Box::new(SpheresInput::open(cases, context, self.fault)?))
+        Ok(Box::new(SpheresInput::open(cases, context, self.fault, self.wrong_sphere)?))
     }
 
     fn kernels(&self) -> Result<Vec<(String, Source)>> {

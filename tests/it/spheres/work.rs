@@ -1,4 +1,4 @@
-//! What the counters say: the same rays and hits from everybody, and how often each exit was taken.
+//! What the counters say: the same rays and hits by every renderer, and how often each exit was taken.
 
 use super::support::{self, Frame, frame, sphere, switches, view};
 use rtbench::workloads::spheres::options::{Algorithm, HitRecord, Lanes, Options, Renderer};

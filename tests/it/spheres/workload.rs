@@ -1,6 +1,7 @@
 //! The sphere tracer on the harness: what is typed, what is planned, and what becomes of what cannot be or is wrong.
 
-use rtbench::device::{CpuDevice, Device};
+use crate::support::own_gpu;
+use rtbench::device::{CpuDevice, Device, VulkanDevice};
 use rtbench::harness::previous::PreviousRun;
 use rtbench::harness::run::{self, Job, Opened};
 use rtbench::harness::workload::{Library, Part, Workload};
@@ -21,15 +22,24 @@ fn request(values: &[(&str, &str)]) -> Request {
 
 /// Runs a plan on the CPU alone, as on a machine without a Vulkan device.
 fn measured(workload: &Spheres, request: &Request, out: &Path) -> Journal {
-    let plan = Plan::new(workload, request).unwrap().on_devices(1);
-    let device = Opened { device: Device::Cpu(CpuDevice::new(2).unwrap()), reason: "a test".into() };
+    measured_on(None, workload, request, out)
+}
+
+/// Runs a plan on the CPU, and on a Vulkan device where there is one.
+fn measured_on(gpu: Option<VulkanDevice>, workload: &Spheres, request: &Request, out: &Path) -> Journal {
+    let cpu = Device::Cpu(CpuDevice::new(2).unwrap());
+    let devices: Vec<Opened> = std::iter::once(cpu)
+        .chain(gpu.map(Device::Vulkan))
+        .map(|device| Opened { device, reason: "a test".into() })
+        .collect();
+    let plan = Plan::new(workload, request).unwrap().on_devices(devices.len());
     let outcome = run::run(Job {
         workload,
         plan: &plan,
         out,
         previous: PreviousRun::default(),
         arguments: vec![],
-        devices: vec![device],
+        devices,
         open: &|_| panic!("no device is lost"),
         interrupted: &|| false,
         watch: &mut |_| (),
@@ -180,7 +190,7 @@ fn a_broken_lane_is_a_wrong_row_before_anything_is_timed() {
     ];
     for kind in kinds {
         let out = tempfile::tempdir().unwrap();
-        let workload = Spheres { fault: Some(Fault { lane: 3, kind }) };
+        let workload = Spheres { fault: Some(Fault { lane: 3, kind }), ..Spheres::default() };
         let journal = measured(&workload, &request(&[("renderer", "sequential,simd,simd-threads")]), out.path());
         assert_eq!(of(&journal, "sequential").status, Status::Ok);
         for renderer in ["simd", "simd-threads"] {
@@ -190,6 +200,26 @@ fn a_broken_lane_is_a_wrong_row_before_anything_is_timed() {
             let difference = row.difference.as_ref().unwrap();
             assert!(out.path().join(difference).is_file(), "{difference}");
         }
+    }
+}
+
+#[test]
+fn a_sphere_that_is_wrong_on_the_gpu_is_a_wrong_row_before_anything_is_timed() {
+    let request = request(&[("scene", "default"), ("renderer", "sequential,gpu")]);
+    for wrong_sphere in [None, Some(0)] {
+        let Some(gpu) = own_gpu(false) else { return };
+        let out = tempfile::tempdir().unwrap();
+        let workload = Spheres { wrong_sphere, ..Spheres::default() };
+        let journal = measured_on(Some(gpu), &workload, &request, out.path());
+        assert_eq!(of(&journal, "sequential").status, Status::Ok);
+        let row = of(&journal, "gpu");
+        if wrong_sphere.is_none() {
+            assert_eq!((row.status, row.samples.is_some()), (Status::Ok, true), "{}", row.message);
+            continue;
+        }
+        assert_eq!((row.status, row.samples.is_none()), (Status::Wrong, true), "{}", row.message);
+        assert!(row.message.contains("pixels differ; the first is ("), "{}", row.message);
+        assert!(out.path().join(row.difference.as_ref().unwrap()).is_file());
     }
 }
 

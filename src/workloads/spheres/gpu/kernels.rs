@@ -25,7 +25,7 @@ pub struct Kernel {
     pub uniform_spheres: Option<u32>,
     /// Of the arithmetic, and of the spheres in their buffer.
     pub precision: Precision,
-    /// Also writes the number of hits of each pixel.
+    /// Also writes the number of hits and of searches of each pixel.
     pub counting: bool,
 }
 

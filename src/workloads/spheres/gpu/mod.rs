@@ -41,6 +41,16 @@ pub struct GpuRenderer<'d> {
     allocated: u64,
 }
 
+/// What a counting kernel makes of a frame, an element for each pixel.
+pub struct Counted {
+    /// Linear RGB and 1, rows from the top.
+    pub image: Vec<[f32; 4]>,
+    /// Rays of the pixel's path that hit before the first miss.
+    pub hits: Vec<u32>,
+    /// Searches of the pixel's path.
+    pub searches: Vec<u32>,
+}
+
 impl<'d> GpuRenderer<'d> {
     /// Like [`GpuRenderer::in_precision`], in single precision.
     ///
@@ -158,17 +168,18 @@ impl<'d> GpuRenderer<'d> {
         self.last()
     }
 
-    /// Renders a view by the counting variant of the kernel: the image, and for each pixel how many rays of its path
-    /// hit before the first miss.
+    /// Renders a view by the counting variant of the kernel.
     ///
     /// # Errors
     /// The device's.
-    pub fn count(&self, view: &View) -> Result<(Vec<[f32; 4]>, Vec<u32>)> {
+    pub fn count(&self, view: &View) -> Result<Counted> {
         let (pipeline, _) = compile(self.device, &Kernel { counting: true, ..self.kernel })?;
         let image = self.device.poisoned("the counted image", PIXEL_BYTES * self.pixels as u64)?;
-        let hits = self.device.poisoned("the hits", size_of::<u32>() as u64 * self.pixels as u64)?;
-        self.once(&pipeline, view, &[(2, &image), (3, &hits)])?;
-        Ok((self.device.read(&image, self.pixels)?, self.device.read(&hits, self.pixels)?))
+        let work = self.device.poisoned("the counts", size_of::<[u32; 2]>() as u64 * self.pixels as u64)?;
+        self.once(&pipeline, view, &[(2, &image), (3, &work)])?;
+        let work: Vec<[u32; 2]> = self.device.read(&work, self.pixels)?;
+        let (hits, searches) = work.into_iter().map(|[hits, searches]| (hits, searches)).unzip();
+        Ok(Counted { image: self.device.read(&image, self.pixels)?, hits, searches })
     }
 
     fn once(&self, pipeline: &Pipeline, view: &View, outputs: &[(u32, &Buffer)]) -> Result<()> {

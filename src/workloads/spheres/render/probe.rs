@@ -20,7 +20,7 @@ pub enum Exit {
 /// A mistake for the tests to plant into a SIMD renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// The broken lane. An exit concerns all lanes.
+    /// The broken lane; [`FaultKind::AllForAny`] concerns all lanes.
     pub lane: usize,
     /// What is wrong.
     pub kind: FaultKind,
@@ -35,6 +35,8 @@ pub enum FaultKind {
     DropMask,
     /// The exit is taken where one lane does not need what follows, instead of none.
     AllForAny(Exit),
+    /// The exit does not ask the lane: it is taken where this one alone needs what follows.
+    Overlook(Exit),
 }
 
 /// Called by the renderers' one text; inlined, so that [`Silent`] leaves nothing behind.
@@ -140,8 +142,11 @@ impl Probe for Watched<'_> {
 
     #[inline(always)]
     fn any<S: Simd, M: SimdMask<S>>(&self, exit: Exit, mask: M) -> bool {
-        match self.planted(FaultKind::AllForAny(exit)) {
-            Some(_) => mask.all_true(),
+        if self.planted(FaultKind::AllForAny(exit)).is_some() {
+            return mask.all_true();
+        }
+        match self.planted(FaultKind::Overlook(exit)) {
+            Some(lane) => mask.to_bitmask() & !(1 << lane) != 0,
             None => mask.any_true(),
         }
     }
