@@ -153,7 +153,7 @@ const MIN_RADIUS: f64 = 1.1e-19;
 /// A radius of which single precision has the square.
 pub fn radius<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     let check = |radius: f64| {
-        let wrong = !(radius >= MIN_RADIUS && radius <= MAX);
+        let wrong = !(MIN_RADIUS..=MAX).contains(&radius);
         wrong.then(|| format!("a radius of {radius:e} is not between 1.1e-19 and 1e18"))
     };
     Number(check).deserialize(deserializer)
