@@ -1,5 +1,5 @@
-//! What a frame's renderers read in addition to the spheres: computed once on the host, in double precision, and rounded
-//! once.
+//! What a frame's renderers read in addition to the spheres: computed once on the host, in double precision, and
+//! rounded once.
 
 use crate::math::T_MAX;
 use crate::workloads::size::Size;

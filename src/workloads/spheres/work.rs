@@ -4,8 +4,8 @@ use super::count::Counts;
 use crate::record::row::Metric;
 use crate::record::statistics::round;
 
-/// The counts of a renderer without vectors, from the live hits and the searches of each pixel. `ends` if a path ends at
-/// its first miss: then those of fewer searches than `trips` ended before their last one.
+/// The counts of a renderer without vectors, from the live hits and the searches of each pixel. `ends` if a path ends
+/// at its first miss: then those of fewer searches than `trips` ended before their last one.
 pub fn of_pixels(hits: &[u32], searches: &[u32], trips: u32, ends: bool) -> Counts {
     let mut counts = Counts::new(trips as usize);
     hits.iter().for_each(|&hits| counts.add_path(hits as usize));

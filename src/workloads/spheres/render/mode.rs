@@ -1,7 +1,7 @@
 //! Algorithm and hit record as types, so that the compiler writes a loop for each.
 //!
-//! Constants would not do: a closure that `vectorize` runs with a level's instructions is a function of its own, and what
-//! it captures is read at run time.
+//! Constants would not do: a closure that `vectorize` runs with a level's instructions is a function of its own, and
+//! what it captures is read at run time.
 
 use super::super::options::{Algorithm, HitRecord, Options};
 
