@@ -1,6 +1,7 @@
 //! Sizes of images, which all workloads take in the same form.
 
 use crate::error::{Error, Result};
+use crate::record::row::{Metric, Value};
 
 /// An image's size in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -39,4 +40,13 @@ pub fn parse_size(text: &str) -> Result<Size> {
         }
         _ => Err(wrong(format!("{text:?} is no image size"))),
     }
+}
+
+/// The metrics `width` and `height` of a row's resolution, `WxH`; none for anything else.
+pub fn metrics(resolution: &str) -> Vec<Metric> {
+    let Some((width, height)) = resolution.split_once('x') else { return Vec::new() };
+    let metric = |(name, side): (&str, &str)| {
+        Metric::new(name, side.parse().map_or_else(|_| Value::from(side), |n: u64| Value::from(n)))
+    };
+    [("width", width), ("height", height)].map(metric).into()
 }

@@ -1,6 +1,7 @@
 //! A case of the sphere tracer, typed; the harness knows it as axes.
 
 use super::options::{Algorithm, HitRecord, MAX_TRIPS, Options, Precision, Renderer};
+use super::renderer::{OPTIONS, typed};
 use crate::error::{Error, Result};
 use crate::harness::parse_list;
 use crate::harness::workload::{Case, Part};
@@ -177,15 +178,9 @@ impl SpheresCase {
             "" => Ok(false),
             text => word(axis, &SWITCH, text),
         };
-        let given = ["lanes", "level", "threads"].map(|key| (key, case.axis(key)));
-        let given = given.iter().filter(|(_, value)| !value.is_empty());
-        let options: Vec<String> = given.map(|(key, value)| format!("{key}={value}")).collect();
         let frames = case.axis("frames");
         Ok(SpheresCase {
-            renderer: match options.as_slice() {
-                [] => Renderer::parse(case.axis("renderer"))?,
-                options => Renderer::parse(&format!("{}:{}", case.axis("renderer"), options.join(",")))?,
-            },
+            renderer: Renderer::parse(&typed(case.axis("renderer"), &OPTIONS.map(|key| (key, case.axis(key)))))?,
             options: Options {
                 algorithm: word("algorithm", &ALGORITHMS, case.axis("algorithm"))?,
                 exit_on_miss: on("exit_on_miss")?,

@@ -160,15 +160,22 @@ impl Given {
     }
 }
 
+/// Names of the options, which are axes of a row as well.
+pub const OPTIONS: [&str; 3] = ["lanes", "level", "threads"];
+
+/// A renderer as it is typed, with those options that have a value.
+pub fn typed(name: &str, options: &[(&str, &str)]) -> String {
+    let given = options.iter().filter(|(_, value)| !value.is_empty());
+    let given: Vec<String> = given.map(|(key, value)| format!("{key}={value}")).collect();
+    let separator = if given.is_empty() { "" } else { ":" };
+    format!("{name}{separator}{}", given.join(","))
+}
+
 impl std::fmt::Display for Renderer {
     /// As it is typed, with the options that were given.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let mut separator = ':';
-        f.write_str(self.name())?;
-        for (key, value) in self.axes().into_iter().filter(|(_, value)| !value.is_empty()) {
-            write!(f, "{separator}{key}={value}")?;
-            separator = ',';
-        }
-        Ok(())
+        let axes = self.axes();
+        let options: Vec<(&str, &str)> = axes.iter().map(|(key, value)| (*key, value.as_str())).collect();
+        f.write_str(&typed(self.name(), &options))
     }
 }

@@ -3,6 +3,7 @@
 use super::case::{self, SpheresCase};
 use super::input::SpheresInput;
 use super::render::Fault;
+use super::renderer::{OPTIONS, typed};
 use super::scene::Scene;
 use super::{gpu, memory};
 use crate::device::Source;
@@ -11,6 +12,7 @@ use crate::harness::workload::{Axis, Case, Context, Devices, Info, Input, Librar
 use crate::names;
 use crate::record::row::{Metric, Row, Value};
 use crate::record::statistics::{FrameStatistics, round};
+use crate::workloads::size;
 
 /// Name of the workload in keys.
 pub const WORKLOAD: &str = "spheres";
@@ -184,11 +186,7 @@ impl Workload for Spheres {
 
     fn derived(&self, row: &Row, frames: Option<&FrameStatistics>) -> Vec<Metric> {
         let axis = |name: &str| row.key.axis(name);
-        let options = ["lanes", "level", "threads"].map(|key| (key, axis(key)));
-        let options: Vec<String> =
-            options.iter().filter(|(_, v)| !v.is_empty()).map(|(key, value)| format!("{key}={value}")).collect();
-        let separator = if options.is_empty() { "" } else { ":" };
-        let label = format!("{}{separator}{}", axis("renderer"), options.join(","));
+        let label = typed(axis("renderer"), &OPTIONS.map(|key| (key, axis(key))));
         // In messages the switches that are on have names, and defaults have none
         let word = |name: &str, value: &str, word: &'static str| if axis(name) == value { word } else { "" };
         let letters = [
@@ -210,11 +208,7 @@ impl Workload for Spheres {
             Metric::new("precision_label", precision),
             Metric::new("trips_label", trips),
         ];
-        if let Some((width, height)) = axis("resolution").split_once('x') {
-            derived.extend([("width", width), ("height", height)].map(|(name, side)| {
-                Metric::new(name, side.parse().map_or_else(|_| Value::from(side), |n: u64| Value::from(n)))
-            }));
-        }
+        derived.extend(size::metrics(axis("resolution")));
         let millions_per_s = |name: &str| {
             let sum = row.metric(None, name).and_then(Value::integer)?;
             let frames = frames.filter(|frames| frames.total_ms > 0.0)?;

@@ -16,7 +16,7 @@ use crate::record::journal::Journal;
 use crate::record::row::{Metric, Row, Value};
 use crate::record::statistics::{FrameStatistics, round};
 use crate::scene;
-use crate::workloads::size::parse_size;
+use crate::workloads::size::{self, parse_size};
 
 /// The workload. Tests decorate its tracers with faults.
 #[derive(Default)]
@@ -232,11 +232,7 @@ impl Workload for Trace {
         let structure = row.key.axis("structure");
         let label = if variant == "default" { structure.to_owned() } else { format!("{structure}:{variant}") };
         let mut derived = vec![Metric::new("structure_label", label), Metric::new("variant", variant)];
-        if let Some((width, height)) = row.key.axis("resolution").split_once('x') {
-            derived.extend([("width", width), ("height", height)].map(|(name, side)| {
-                Metric::new(name, side.parse().map_or_else(|_| Value::from(side), |n: u64| Value::from(n)))
-            }));
-        }
+        derived.extend(size::metrics(row.key.axis("resolution")));
         let sum = |ray: &str, counter: &str| row.metric(Some(ray), counter).and_then(Value::integer);
         let rays: u64 = RAY_TYPES.iter().filter_map(|ray| sum(ray, "rays")).sum();
         if let Some(frames) = frames.filter(|frames| rays > 0 && frames.total_ms > 0.0) {
