@@ -1,4 +1,5 @@
-// Given rays: the nearest hit, or with ANY_HIT whether anything is hit. One invocation per ray.
+// Given rays: the nearest hit, or with ANY_HIT whether anything is hit before a limit. One invocation per ray. A ray
+// without direction is not traced and hits nothing.
 // Twin: src/workloads/trace/given.rs.
 
 //!include lib/geom.wgsl
@@ -21,9 +22,9 @@ struct GivenHit {
 
 struct Job {
     rays: u32,
-    pad0: u32,
-    pad1: u32,
-    pad2: u32,
+    row_groups: u32, // work-groups in a row of the dispatch
+    limit: f32,      // with ANY_HIT, in units of the direction's length
+    pad: u32,
 }
 
 @group(0) @binding(0) var<uniform> job: Job;
@@ -33,24 +34,24 @@ struct Job {
 @compute @workgroup_size(GROUP_SIZE)
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local_index: u32) {
     lane = local_index;
-    let index = group.x * GROUP_SIZE + local_index;
-    let alive = index < job.rays;
+    let index = (group.y * job.row_groups + group.x) * GROUP_SIZE + local_index;
     let source = given[min(index, job.rays - 1u)];
+    let alive = index < job.rays && any(source.direction.xyz != vec3<f32>(0.0, 0.0, 0.0));
     let ray = make_ray(source.origin.xyz, source.direction.xyz);
     var hit = GivenHit(T_MAX, MISS);
     if (ANY_HIT) {
-        if (any_hit(ray, T_MAX, alive)) {
+        if (any_hit(ray, job.limit, alive) && alive) {
             hit = GivenHit(0.0, 0u);
         }
     } else {
         let triangle_ref = nearest_hit(ray, alive);
-        if (triangle_ref != MISS) {
+        if (triangle_ref != MISS && alive) {
             let r = read_triangle_ref(triangle_ref);
             let found = surface_hit(ray, read_position(r.x), read_position(r.y), read_position(r.z));
             hit = GivenHit(found.t, r.w);
         }
     }
-    if (alive) {
+    if (index < job.rays) {
         hits[index] = hit;
     }
 }

@@ -3,6 +3,7 @@
 pub mod kernel_files;
 pub mod size;
 pub mod spheres;
+pub mod splat;
 pub mod trace;
 
 use crate::device::Source;

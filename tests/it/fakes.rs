@@ -6,7 +6,7 @@ use rtbench::harness::environment;
 use rtbench::math::Hit;
 use rtbench::record::row::{SCHEMA, Samples, Settings, Status, TimingSource};
 use rtbench::record::run::{DeviceRecord, Environment, PlanRecord, Provenance};
-use rtbench::workloads::trace::backend::{Config, CountedPixel, GivenRay, Pixel, Prepared, Size, Timed};
+use rtbench::workloads::trace::backend::{Config, CountedPixel, Pixel, Prepared, Size, Timed, TraceRay};
 use rtbench::workloads::trace::record::{
     ConfigurationRecord, CounterSums, Memory, SceneRecord, StructureRecord, WORKLOAD,
 };
@@ -244,8 +244,8 @@ impl Prepared for Faulty<'_> {
         Ok(timed)
     }
 
-    fn trace(&mut self, rays: &[GivenRay], any_hit: bool) -> Result<Vec<Hit>> {
-        self.inner.trace(rays, any_hit)
+    fn cast(&mut self, rays: &[TraceRay], any_before: Option<f32>) -> Result<Vec<Hit>> {
+        self.inner.cast(rays, any_before)
     }
 
     fn allocated(&self) -> (u64, u64) {

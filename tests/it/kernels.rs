@@ -5,11 +5,12 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use rtbench::device::Source;
 use rtbench::math::Vertex;
 use rtbench::scene::{Light, Material};
+use rtbench::workloads::trace::backend::TraceRay;
 use rtbench::workloads::trace::backend::{Config, CountedPixel, Counters, Pixel};
 use rtbench::workloads::trace::bih::{BihNode, BihUniform};
 use rtbench::workloads::trace::brute::BruteUniform;
 use rtbench::workloads::trace::gpu::kernels::{self, Entry, Kernel, StagedPass};
-use rtbench::workloads::trace::gpu::{FrameUniform, TraceRay, WaitingPath};
+use rtbench::workloads::trace::gpu::{CastJob, FrameUniform, WaitingPath};
 use rtbench::workloads::trace::grid::GridUniform;
 use rtbench::workloads::trace::grid::octants::Octant;
 use rtbench::workloads::trace::kdtree::{KdTreeUniform, RopeLeaf};
@@ -203,6 +204,7 @@ fn struct_layouts_agree() {
     };
     let module = &check(&assemble(&kernel)).unwrap();
     same_layout!(module, "GivenRay", TraceRay, [origin, direction]);
+    same_layout!(module, "Job", CastJob, [rays, row_groups, limit, pad]);
     same_layout!(module, "KdTree", KdTreeUniform, [bounds_min, bounds_max]);
     same_layout!(&render("bih", false), "Bih", BihUniform, [bounds_min, bounds_max]);
     // Rows of 16 bytes, of which kernels read whole ones

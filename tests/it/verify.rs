@@ -51,8 +51,8 @@ impl Prepared for Spoiled<'_> {
         unreachable!("verification does not time")
     }
 
-    fn trace(&mut self, rays: &[GivenRay], any_hit: bool) -> Result<Vec<Hit>> {
-        self.inner.trace(rays, any_hit)
+    fn cast(&mut self, rays: &[TraceRay], any_before: Option<f32>) -> Result<Vec<Hit>> {
+        self.inner.cast(rays, any_before)
     }
 
     fn allocated(&self) -> (u64, u64) {

@@ -112,6 +112,22 @@ impl VulkanDevice {
         self.limits.max_compute_workgroups_per_dimension
     }
 
+    /// Work-groups of a dispatch with at least `invocations` invocations, in rows as long as the device allows: columns
+    /// and rows.
+    ///
+    /// # Errors
+    /// [`Error::Refused`] if the device has not so many.
+    pub fn groups_for(&self, invocations: u64, group_size: u32) -> Result<(u32, u32)> {
+        let (groups, most) = (invocations.div_ceil(group_size.into()).max(1), u64::from(self.max_groups()));
+        let columns = groups.min(most);
+        let rows = groups.div_ceil(columns);
+        if rows > most {
+            let need = format!("{groups} work-groups are more than this device's {most} x {most}");
+            return Err(Error::too_large("a dispatch", need, "use a smaller input"));
+        }
+        Ok((columns as u32, rows as u32))
+    }
+
     /// Ends the device as a crashing driver would: everything after it reports a lost device. For tests.
     pub fn destroy(&self) {
         self.device.destroy();

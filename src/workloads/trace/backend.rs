@@ -9,6 +9,7 @@ use crate::scene::Scene;
 use crate::scene::placement::{exponent_of, power_of_two};
 pub use crate::workloads::size::Size;
 pub use crate::workloads::trace::count::Counters;
+pub use crate::workloads::trace::given::TraceRay;
 use crate::workloads::trace::method::Group;
 pub use crate::workloads::trace::rays::{Config, MAX_BOUNCES};
 use crate::workloads::trace::{Method, Structure};
@@ -144,16 +145,16 @@ impl GivenRay {
 }
 
 /// Traces given rays with directions of any length: `trace` gets them with a length near 1, in the same order, and its
-/// distances are scaled back. `first` is the number of the first ray, for errors.
+/// distances are scaled back.
 ///
 /// # Errors
 /// Those of `trace`; [`crate::Error::Input`] for a distance that is no float because the direction is too short.
-pub(crate) fn trace_units(
-    rays: &[GivenRay],
-    first: usize,
-    trace: impl FnOnce(&[GivenRay]) -> Result<Vec<Hit>>,
-) -> Result<Vec<Hit>> {
-    let (units, exponents): (Vec<GivenRay>, Vec<i32>) = rays.iter().map(GivenRay::unit).unzip();
+fn trace_units(rays: &[GivenRay], trace: impl FnOnce(&[TraceRay]) -> Result<Vec<Hit>>) -> Result<Vec<Hit>> {
+    let unit = |ray: &GivenRay| {
+        let (GivenRay { origin, direction }, exponent) = ray.unit();
+        (TraceRay::new(origin, direction), exponent)
+    };
+    let (units, exponents): (Vec<TraceRay>, Vec<i32>) = rays.iter().map(unit).unzip();
     let mut hits = trace(&units)?;
     for (i, (hit, &exponent)) in hits.iter_mut().zip(&exponents).enumerate() {
         if hit.triangle == MISS || exponent == 0 {
@@ -162,7 +163,7 @@ pub(crate) fn trace_units(
         let t = f64::from(hit.t) * power_of_two(exponent);
         if t > f64::from(T_MAX) {
             let problem = format!("its hit is {t:e} times the direction's length away, which is no float");
-            return Err(Error::argument(format!("ray {}", first + i), problem, "give a longer direction"));
+            return Err(Error::argument(format!("ray {i}"), problem, "give a longer direction"));
         }
         hit.t = t as f32;
     }
@@ -214,9 +215,16 @@ pub trait Prepared {
     /// before the path. It shows that what was timed was also right.
     fn timed(&mut self) -> Result<Timed>;
 
-    /// Traces given rays, in the coordinates of the scene in memory: finds the nearest hit, or with `any_hit` whether
-    /// anything is hit (`triangle` and `t` are then 0).
-    fn trace(&mut self, rays: &[GivenRay], any_hit: bool) -> Result<Vec<Hit>>;
+    /// Casts rays as they are: finds the nearest hit, or with a limit whether anything is hit before that distance, in
+    /// units of the direction's length (`triangle` and `t` are then 0). A ray without direction hits nothing.
+    fn cast(&mut self, rays: &[TraceRay], any_before: Option<f32>) -> Result<Vec<Hit>>;
+
+    /// Traces given rays with directions of any length, in the coordinates of the scene in memory: finds the nearest
+    /// hit, or with `any_hit` whether anything is hit (`triangle` and `t` are then 0).
+    fn trace(&mut self, rays: &[GivenRay], any_hit: bool) -> Result<Vec<Hit>> {
+        let any_before = any_hit.then_some(T_MAX);
+        trace_units(rays, |rays| self.cast(rays, any_before))
+    }
 
     /// The identities of the timed kernels, one for each pass of a frame; none for the twins.
     fn kernels(&self, _config: Config) -> Result<Vec<KernelInfo>> {

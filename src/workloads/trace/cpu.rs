@@ -7,7 +7,7 @@ use crate::math::Hit;
 use crate::scene::Scene;
 use crate::workloads::trace::backend::*;
 use crate::workloads::trace::count::{Count, CountOff};
-use crate::workloads::trace::given::trace_group;
+use crate::workloads::trace::given::{TraceRay, trace_group};
 use crate::workloads::trace::method::{Group, Reflections};
 use crate::workloads::trace::path::Frame;
 use crate::workloads::trace::render::render_group;
@@ -238,16 +238,14 @@ impl<T: Traverse> Prepared for CpuPrepared<'_, T> {
         Ok(Timed { pixels: self.timed.clone(), dispatches: 0 })
     }
 
-    fn trace(&mut self, rays: &[GivenRay], any_hit: bool) -> Result<Vec<Hit>> {
-        trace_units(rays, 0, |rays| {
-            let mut hits = vec![Hit::NONE; rays.len()];
-            self.device.pool().install(|| {
-                hits.par_chunks_mut(GROUP).zip(rays.par_chunks(GROUP)).for_each(|(hits, rays)| {
-                    trace_group(&self.traversal, self.triangles, rays, any_hit, hits);
-                });
+    fn cast(&mut self, rays: &[TraceRay], any_before: Option<f32>) -> Result<Vec<Hit>> {
+        let mut hits = vec![Hit::NONE; rays.len()];
+        self.device.pool().install(|| {
+            hits.par_chunks_mut(GROUP).zip(rays.par_chunks(GROUP)).for_each(|(hits, rays)| {
+                trace_group(&self.traversal, self.triangles, rays, any_before, hits);
             });
-            Ok(hits)
-        })
+        });
+        Ok(hits)
     }
 
     fn allocated(&self) -> (u64, u64) {

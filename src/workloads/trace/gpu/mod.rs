@@ -1,5 +1,6 @@
 //! Ray tracing on a Vulkan device: kernel variants, uploads, frames.
 
+mod caster;
 pub mod kernels;
 mod path;
 mod prepared;
@@ -7,7 +8,8 @@ mod rendering;
 mod shared;
 mod upload;
 
-pub use shared::{FrameUniform, TraceRay, WaitingPath};
+pub use caster::{Cast, RayCaster};
+pub use shared::{CastJob, FrameUniform, WaitingPath};
 
 use crate::device::{DeviceInfo, VulkanDevice};
 use crate::error::Result;

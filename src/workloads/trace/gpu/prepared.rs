@@ -3,22 +3,20 @@
 use super::kernels::{Entry, Kernel, stack_size};
 use super::path::LastFrame;
 use super::rendering::{Part, entries_of, stages};
-use super::shared::TraceRay;
 use super::upload::Uploaded;
 use crate::camera::View;
-use crate::device::vulkan::{Bindings, Buffer, Dispatch, Groups, Pipeline, PipelineDescription, Resource};
-use crate::device::{Frame, Pass, Stage, VulkanDevice};
+use crate::device::VulkanDevice;
+use crate::device::vulkan::{Bindings, Buffer, Pipeline, PipelineDescription, Resource};
 use crate::error::{Error, Result};
 use crate::math::{Hit, T_MAX};
 use crate::scene::Scene;
 use crate::workloads::trace::backend::*;
 use crate::workloads::trace::cpu::cannot_walk;
 use crate::workloads::trace::{Method, Structure};
-use bytemuck::Zeroable;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Rays per dispatch of [`Prepared::trace`].
+/// Rays per dispatch of [`Prepared::cast`].
 const TRACE_RAYS: usize = 1 << 20;
 
 pub(super) struct GpuPrepared<'a> {
@@ -98,26 +96,18 @@ impl<'a> GpuPrepared<'a> {
         self.device.bind(pipeline, &resources)
     }
 
+    /// The identity of a kernel.
+    pub(super) fn kernel_info(&self, entry: Entry) -> Result<KernelInfo> {
+        let kernel = self.kernel_of(entry);
+        let hash = kernel.assemble().map_err(Error::Device)?.hash();
+        let fetch = if kernel.textures { "textures" } else { "buffers" };
+        let checked = self.device.options().checked || self.method.checked;
+        Ok(KernelInfo { hash, fetch: fetch.to_owned(), checked })
+    }
+
     /// A buffer for the timed kernel's image.
     pub(super) fn image_buffer(&self, size: Size) -> Result<Buffer> {
         self.device.poisoned("the image", (size.pixels() * size_of::<Pixel>()) as u64)
-    }
-
-    /// Traces as many rays as a dispatch takes.
-    fn trace_chunk(&self, pipeline: &Pipeline, rays: &[GivenRay]) -> Result<Vec<Hit>> {
-        let input: Vec<TraceRay> = rays
-            .iter()
-            .map(|ray| TraceRay { origin: ray.origin, direction: ray.direction, ..TraceRay::zeroed() })
-            .collect();
-        let input = self.device.storage("the given rays", &input)?;
-        let job = self.device.uniform("the job", &[rays.len() as u32, 0, 0, 0])?;
-        let output = self.device.poisoned("the hits", (rays.len() * 8) as u64)?;
-        let bindings = self.bind(pipeline, Resource::from(&job), &[(3, &input), (8, &output)]);
-        let groups = Groups::Fixed((rays.len() as u32).div_ceil(self.method.group.size()), 1, 1);
-        let work = Dispatch { pipeline, bindings: &bindings, offset: None, groups };
-        self.device.run(&Frame::new(vec![Pass { stage: Stage("trace"), work }]))?;
-        let found: Vec<[u32; 2]> = self.device.read(&output, rays.len())?;
-        Ok(found.iter().map(|&[t, triangle]| Hit { t: f32::from_bits(t), triangle }).collect())
     }
 }
 
@@ -178,26 +168,17 @@ impl Prepared for GpuPrepared<'_> {
         }
     }
 
-    fn trace(&mut self, rays: &[GivenRay], any_hit: bool) -> Result<Vec<Hit>> {
-        let pipeline = self.compiled(Entry::Trace { any_hit })?;
+    fn cast(&mut self, rays: &[TraceRay], any_before: Option<f32>) -> Result<Vec<Hit>> {
         let mut hits = Vec::with_capacity(rays.len());
         for rays in rays.chunks(TRACE_RAYS) {
-            let found = trace_units(rays, hits.len(), |rays| self.trace_chunk(&pipeline, rays))?;
-            hits.extend(found);
+            hits.extend(self.cast_chunk(rays, any_before)?);
         }
         debug_assert!(hits.iter().all(|hit| hit.t <= T_MAX));
         Ok(hits)
     }
 
     fn kernels(&self, config: Config) -> Result<Vec<KernelInfo>> {
-        let info = |entry: Entry| {
-            let kernel = self.kernel_of(entry);
-            let hash = kernel.assemble().map_err(Error::Device)?.hash();
-            let fetch = if kernel.textures { "textures" } else { "buffers" };
-            let checked = self.device.options().checked || self.method.checked;
-            Ok(KernelInfo { hash, fetch: fetch.to_owned(), checked })
-        };
-        entries_of(self.method, config, false).into_iter().map(info).collect()
+        entries_of(self.method, config, false).into_iter().map(|entry| self.kernel_info(entry)).collect()
     }
 
     fn stages(&self, config: Config) -> Vec<&'static str> {

@@ -46,13 +46,13 @@ pub struct WaitingPath {
 /// path.
 pub const LENGTH: [u32; 4] = [0, 1, 1, 0];
 
-/// `GivenRay` of `kernels/trace/given.wgsl`.
+/// `Job` of `kernels/trace/given.wgsl`.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-#[allow(missing_docs)]
-pub struct TraceRay {
-    pub origin: Vec3,
-    pub pad0: f32,
-    pub direction: Vec3,
-    pub pad1: f32,
+#[allow(missing_docs)] // the fields are described in the kernel
+pub struct CastJob {
+    pub rays: u32,
+    pub row_groups: u32,
+    pub limit: f32,
+    pub pad: u32,
 }
