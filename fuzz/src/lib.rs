@@ -10,6 +10,10 @@ use rtbench::camera::CameraPath;
 use rtbench::scene::{self, FORMATS, Scene};
 use rtbench::workloads::size::Size;
 use rtbench::workloads::spheres;
+use rtbench::workloads::splat::radius::Radius;
+use rtbench::workloads::splat::reference::cache;
+use rtbench::workloads::splat::technique::Technique;
+use rtbench::workloads::splat;
 use rtbench::workloads::trace::Selection;
 use std::path::PathBuf;
 use std::sync::LazyLock;
@@ -88,6 +92,29 @@ pub fn spheres(bytes: &[u8]) {
         for frame in 0..4 {
             let view = spheres::view::View::of(&scene, Size { width: 3, height: 2 }, 5, frame, 4);
             assert!(view.origin.is_finite() && view.corner.is_finite(), "{view:?}");
+        }
+    }
+}
+
+/// Reads these bytes as values of flags of `rtbench splat`: what is read is written in one way.
+pub fn splat(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    one_line(splat::light_choices(text));
+    if let Some(radius) = one_line(Radius::parse(text)) {
+        assert_eq!(Radius::parse(&radius.to_string()).expect("what was written is read"), radius);
+        one_line(radius.length(10.0, &ROOM.placement));
+    }
+    if let Some(technique) = one_line(Technique::parse(text)) {
+        assert_eq!(Technique::parse(&technique.to_string()).expect("what was written is read"), technique);
+    }
+}
+
+/// Reads these bytes as a reference that was kept, once as they are and once with a valid checksum.
+pub fn path_traced(bytes: &[u8]) {
+    let pixels = [0, 1];
+    for file in [bytes.to_vec(), cache::seal("key", bytes)] {
+        if let Ok(reference) = cache::read(&file, "key", &pixels) {
+            assert_eq!(reference.pixels, pixels);
         }
     }
 }

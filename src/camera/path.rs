@@ -24,6 +24,11 @@ const EMBEDDED: &[(&str, &str)] = &[
     ("room", include_str!("../../camera-paths/room.toml")),
     ("conference-obj", include_str!("../../camera-paths/conference-obj.toml")),
     ("sponza", include_str!("../../camera-paths/sponza.toml")),
+    ("sponza-nave", include_str!("../../camera-paths/sponza-nave.toml")),
+    ("sibenik", include_str!("../../camera-paths/sibenik.toml")),
+    ("sphere", include_str!("../../camera-paths/sphere.toml")),
+    ("box", include_str!("../../camera-paths/box.toml")),
+    ("plane", include_str!("../../camera-paths/plane.toml")),
 ];
 
 /// The file name by which errors refer to an embedded path.

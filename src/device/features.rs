@@ -50,6 +50,12 @@ impl Features {
         Features(self.0 & other.0)
     }
 
+    /// The features in either set.
+    #[must_use]
+    pub fn union(self, other: Features) -> Features {
+        Features(self.0 | other.0)
+    }
+
     /// The features of this set that `other` lacks: what an algorithm with these needs misses on a device.
     pub fn missing_in(self, other: Features) -> Features {
         Features(self.0 & !other.0)
@@ -83,6 +89,7 @@ mod tests {
         assert!(needs.has(Feature::Subgroups) && !needs.has(Feature::Timestamps));
         assert_eq!(needs.missing_in(device).iter().collect::<Vec<_>>(), [Feature::Subgroups]);
         assert_eq!(needs.intersection(device), Features::of(&[Feature::RayQuery]));
+        assert_eq!(needs.union(device).iter().count(), 3);
         assert!(Features::default().missing_in(device).is_empty());
     }
 }

@@ -75,8 +75,8 @@ fn from_oklab(lightness: f32, a: f32, b: f32) -> [f32; 3] {
     ]
 }
 
-/// A linear channel as an sRGB byte.
-fn to_srgb(linear: f32) -> u8 {
+/// A linear channel as an sRGB byte; what is above 1 is white.
+pub fn to_srgb(linear: f32) -> u8 {
     let encoded = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
     (encoded * 255.0).round() as u8
 }

@@ -1,7 +1,8 @@
 //! The catalogue: published scenes by name. `scenes/catalog.toml` is embedded in the program; the scenes' files are
 //! not, they are searched in a folder that the caller names.
 
-use super::{Light, Placement, did_you_mean, procedural};
+use super::radiometry::Radiometry;
+use super::{Light, Placement, did_you_mean, load, options, procedural};
 use crate::error::{Error, Result};
 use crate::guard;
 use glam::Vec3;
@@ -92,6 +93,8 @@ pub struct Entry {
     pub file: Vec<FileLocation>,
     /// The archive that `rtbench scenes fetch` downloads, if there is an official address.
     pub fetch: Option<Archive>,
+    /// What light simulations need to know about it.
+    pub radiometry: Option<Radiometry>,
     #[serde(default)]
     light: Vec<CatalogueLight>,
 }
@@ -113,6 +116,14 @@ pub fn entries() -> &'static [Entry] {
 /// The entry of that name, if the catalogue has one.
 pub fn find(name: &str) -> Option<&'static Entry> {
     entries().iter().find(|entry| entry.name == name)
+}
+
+/// The radiometry of the scene of this name or `name:key=value,...`. Lights and extent are in the coordinates of the
+/// file as the catalogue reads it: with other options `up` or `scale` there is none.
+pub fn radiometry(spec: &str) -> Option<&'static Radiometry> {
+    let (name, settings) = load::split_settings(spec);
+    let moves = |setting: &String| setting.starts_with("up=") || setting.starts_with("scale=");
+    find(name)?.radiometry.as_ref().filter(|_| !options::settings(settings).iter().any(moves))
 }
 
 /// The entry of that name.

@@ -348,6 +348,11 @@ fn append(scene: &mut Scene, mut other: Scene) {
         vertices: t.vertices.map(|v| v.saturating_add(vertices)),
         material: t.material.saturating_add(materials),
     }));
+    if !(scene.material_names.is_empty() && other.material_names.is_empty()) {
+        scene.material_names.resize(scene.materials.len(), String::new());
+        scene.material_names.extend(other.material_names);
+        scene.material_names.resize(scene.materials.len() + other.materials.len(), String::new());
+    }
     scene.materials.extend(other.materials);
     scene.lights.extend(other.lights);
     for warning in other.warnings {

@@ -23,6 +23,7 @@ pub mod ply;
 pub mod polygon;
 mod probe;
 pub mod procedural;
+pub mod radiometry;
 mod sources;
 mod suggest;
 mod text;
@@ -170,6 +171,9 @@ pub struct Scene {
     pub triangles: Vec<Triangle>,
     /// The materials that triangles refer to; never empty.
     pub materials: Vec<Material>,
+    /// The names of the materials in the file, as many as there are materials; empty where the format has none. They
+    /// are no part of a scene's identity, and caches do not hold them.
+    pub material_names: Vec<String>,
     /// Point lights; empty if the file has none, in which case the camera path provides them.
     pub lights: Vec<Light>,
     /// Colour of rays that leave the scene.
@@ -218,6 +222,10 @@ impl Scene {
             }
         }
         let (vertices, materials) = (self.vertices.len() as u32, self.materials.len() as u32);
+        if !self.material_names.is_empty() && self.material_names.len() != self.materials.len() {
+            let problem = format!("{} names are not those of {materials} materials", self.material_names.len());
+            return Some((problem, "give each material a name, or none"));
+        }
         if extent.vertex() >= vertices
             && let Some(i) = self.triangles.iter().position(|t| t.vertices.iter().any(|&v| v >= vertices))
         {

@@ -1,6 +1,7 @@
 //! What rtbench can measure: one folder per workload, and one line in [`ALL`].
 
 pub mod kernel_files;
+pub mod scan;
 pub mod size;
 pub mod spheres;
 pub mod splat;
@@ -12,7 +13,7 @@ use crate::harness::workload::Workload;
 use std::collections::BTreeMap;
 
 /// All workloads, in the order of help.
-pub static ALL: &[&dyn Workload] = &[&trace::TRACE, &spheres::SPHERES];
+pub static ALL: &[&dyn Workload] = &[&trace::TRACE, &spheres::SPHERES, &splat::SPLAT];
 
 /// A workload by its name.
 pub fn find(name: &str) -> Option<&'static dyn Workload> {

@@ -17,6 +17,14 @@ impl Size {
     pub fn pixels(self) -> usize {
         self.width as usize * self.height as usize
     }
+
+    /// A size of the same shape whose longer side has so many pixels.
+    #[must_use]
+    pub fn with_longer_side(self, pixels: u32) -> Size {
+        let longer = u64::from(self.width.max(self.height).max(1));
+        let side = |length: u32| ((u64::from(length) * u64::from(pixels) / longer) as u32).max(1);
+        Size { width: side(self.width), height: side(self.height) }
+    }
 }
 
 /// Most pixels of an image on any device: a frame's pixels are also held in main memory.

@@ -201,7 +201,7 @@ fn lights_come_from_the_path_or_the_scene_or_the_default() {
 /// No ray from a frame's position to the next is blocked: no walk passes through a wall or a column.
 #[test]
 fn walks_keep_out_of_the_geometry() {
-    for name in ["terrain", "sphereflake", "stadium", "hall", "room"] {
+    for name in ["terrain", "sphereflake", "stadium", "hall", "room", "sphere", "box", "plane"] {
         let scene = small(name);
         let views = CameraPath::load(name).unwrap().views(&scene, None).unwrap();
         let triangles: Vec<_> = (0..scene.triangles.len() as u32).map(|i| scene.corners(i)).collect();

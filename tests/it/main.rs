@@ -27,6 +27,7 @@ mod scene; // readers and what breaks them, memory while loading, caches, proced
 mod schema; // JSON Schema of journals and run.json against the types and real files
 mod sources; // published numbers; tables, claims, figures and report from records
 mod spheres; // the sphere tracer: the same bits from every renderer, broken lanes, closed forms, work
+mod splat; // photon splatting: scans, twins and kernels, proof against closed forms and paths from the eye, rows
 mod staged; // frames of several passes against those of one
 mod support; // small scenes, random numbers, the GPU if there is one
 mod sweep; // the sweep loop on a device that breaks, presets, the plan

@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 use rtbench::camera::{Camera, View};
-use rtbench::device::VulkanDevice;
-use rtbench::device::vulkan::{Selector, VulkanOptions, adapters, choose};
+use rtbench::device::vulkan::{Selector, VulkanOptions, adapters, adapters_with, choose};
+use rtbench::device::{Features, VulkanDevice};
 use rtbench::math::Vertex;
 use rtbench::scene::{Light, Material, Scene, Triangle};
 use rtbench::workloads::trace::backend::GivenRay;
@@ -90,6 +90,25 @@ pub fn gpu() -> Option<&'static VulkanDevice> {
         eprintln!("not run: needs a Vulkan device");
     }
     gpu
+}
+
+/// A device of one's own that was opened with more features than usual; without a device that has them, says so and
+/// returns nothing.
+pub fn gpu_with(features: Features) -> Option<VulkanDevice> {
+    let all = adapters_with(features);
+    let gpu = match choose(&all, &Selector::Best).and_then(|best| VulkanDevice::open(best, VulkanOptions::default())) {
+        Ok(gpu) => gpu,
+        Err(error) if std::env::var_os("RTBENCH_REQUIRE_GPU").is_none() => {
+            eprintln!("not run: {error}");
+            return None;
+        }
+        Err(error) => panic!("RTBENCH_REQUIRE_GPU is set, but {error}"),
+    };
+    if !features.missing_in(gpu.features()).is_empty() {
+        eprintln!("not run: {} lacks one of {:?}", gpu.info().name, features.iter().collect::<Vec<_>>());
+        return None;
+    }
+    Some(gpu)
 }
 
 /// A device of one's own, with or without wgpu's shader checks.

@@ -53,6 +53,11 @@ pub fn adapters() -> Vec<Adapter> {
     list(WANTED)
 }
 
+/// Like [`adapters`], whose devices have these features as well wherever their adapters offer them.
+pub fn adapters_with(features: Features) -> Vec<Adapter> {
+    list(WANTED.union(features))
+}
+
 pub(super) fn list(wanted: Features) -> Vec<Adapter> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends: wgpu::Backends::VULKAN,

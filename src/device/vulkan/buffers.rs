@@ -15,6 +15,13 @@ pub struct Buffer {
 /// An empty buffer cannot be bound, and a binding must hold one element: every buffer has at least this many bytes.
 const SMALLEST: u64 = 96;
 
+impl Buffer {
+    /// The bytes that were asked for.
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+}
+
 impl VulkanDevice {
     /// A buffer with contents that kernels read.
     ///

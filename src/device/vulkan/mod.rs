@@ -10,7 +10,7 @@ mod pipeline;
 mod read_buffer;
 mod run;
 
-pub use adapters::{Adapter, Selector, WANTED, adapters, choose, fitting};
+pub use adapters::{Adapter, Selector, WANTED, adapters, adapters_with, choose, fitting};
 pub use binding::{Binding, BindingKind, Pipeline, Texel};
 pub use buffers::Buffer;
 pub use cost::KernelCost;

@@ -97,9 +97,20 @@ impl VulkanDevice {
     /// # Errors
     /// The device's.
     pub fn run(&self, frame: &Frame<Dispatch>) -> Result<Duration> {
+        self.run_until(frame, &|| false)
+    }
+
+    /// Runs a frame as [`VulkanDevice::run`] does, unless it is interrupted.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`] between passes, or the device's.
+    pub fn run_until(&self, frame: &Frame<Dispatch>, interrupted: Interrupted) -> Result<Duration> {
         self.flush_uploads()?;
         let start = Instant::now();
         for pass in &frame.passes {
+            if interrupted() {
+                return Err(Error::Interrupted);
+            }
             let submission = self.submit(std::slice::from_ref(pass), |_| None);
             self.wait(submission)?;
         }

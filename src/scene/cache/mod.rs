@@ -245,6 +245,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Scene> {
         vertices,
         triangles,
         materials,
+        material_names: Vec::new(),
         lights,
         background: Vec3::from(header.background),
         camera_path: texts.camera_path,

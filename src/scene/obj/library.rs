@@ -12,8 +12,8 @@ use std::path::{Path, PathBuf};
 /// The largest number of names of libraries, each of which is searched.
 const MAX_LIBRARIES: usize = 10_000;
 
-/// Upper bound of the memory per material in bytes, without its name: material and emission in growing vectors, and an
-/// entry in a map.
+/// Upper bound of the memory per material in bytes, without its name: material and emission in growing vectors, an
+/// entry in a map, and one in the list of names.
 const PER_MATERIAL: usize = 256;
 
 impl ObjReader<'_> {
@@ -22,7 +22,7 @@ impl ObjReader<'_> {
         let index = match self.names.get(&name).or_else(|| self.names.get(plain)) {
             Some(named) => named.index,
             None => {
-                let kept = self.faces.limits.keep(PER_MATERIAL + 2 * name.len());
+                let kept = self.faces.limits.keep(PER_MATERIAL + 4 * name.len());
                 kept.map_err(|fault| Fault::new(line, fault.problem, "use fewer materials"))?;
                 if plain.len() < name.len() {
                     self.commented.push(name.clone());

@@ -224,8 +224,9 @@ impl<'a> ObjReader<'a> {
         }
         normals::normalise_or_smooth(&mut vertices, triangles);
         let lights = lamps::lights(&vertices, triangles, &self.emission);
+        let material_names = material_names(self.names, self.materials.len());
         let (materials, placement) = (self.materials, self.placement);
-        let mut scene = Scene { vertices, lights, materials, placement, ..Scene::default() };
+        let mut scene = Scene { vertices, lights, materials, material_names, placement, ..Scene::default() };
         scene.triangles = self.faces.triangles;
         scene.warnings = self.warnings.lines();
         let problems = self.faces.problems.warnings(self.path, self.faces.normals.len(), self.unusual);
@@ -250,4 +251,15 @@ impl<'a> ObjReader<'a> {
         }
         scene
     }
+}
+
+/// The names of all materials by their indices; that of faces before the first `usemtl` is empty.
+fn material_names(names: HashMap<Vec<u8>, NamedMaterial>, materials: usize) -> Vec<String> {
+    let mut by_index = vec![String::new(); materials];
+    for (name, NamedMaterial { index, .. }) in names {
+        // What is not UTF-8 becomes replacement characters
+        by_index[index as usize] =
+            String::from_utf8(name).unwrap_or_else(|error| String::from_utf8_lossy(error.as_bytes()).into_owned());
+    }
+    by_index
 }

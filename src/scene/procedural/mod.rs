@@ -4,9 +4,12 @@
 //! A scene is a module with an `INFO` and a line in `SCENES`. All have the parameter `triangles`, which they meet
 //! within a few percent. Lengths are in metres, and y points up.
 
+mod enclosure;
 mod hall;
+mod integrating;
 mod mesh;
 mod noise;
+mod plane;
 mod room;
 mod scan;
 mod shapes;
@@ -57,7 +60,17 @@ pub struct SceneInfo {
     build: fn(&Values) -> Scene,
 }
 
-const SCENES: &[SceneInfo] = &[scan::INFO, terrain::INFO, sphereflake::INFO, stadium::INFO, hall::INFO, room::INFO];
+const SCENES: &[SceneInfo] = &[
+    scan::INFO,
+    terrain::INFO,
+    sphereflake::INFO,
+    stadium::INFO,
+    hall::INFO,
+    room::INFO,
+    integrating::INFO,
+    enclosure::INFO,
+    plane::INFO,
+];
 
 /// Descriptions of all built-in scenes.
 pub fn list() -> Vec<SceneInfo> {

@@ -1,12 +1,14 @@
 //! Photons as they lie in memory: three arrays of vec4, so that a device binds up to 8,388,608 of them in 128 MiB.
 
+use super::setting::Setting;
+use crate::error::{Error, Result};
 use glam::Vec4;
 
 /// Photons, or slots for photons. All arrays are equally long.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Photons {
-    /// Position, lifted off the surface by the epsilon; `w` is the number of the hit along its path (the light's first hit
-    /// is 1), as a float. 0 in a slot without a photon.
+    /// Position, lifted off the surface by the epsilon; `w` is the number of the hit along its path (the light's first
+    /// hit is 1), as a float. 0 in a slot without a photon.
     pub positions: Vec<Vec4>,
     /// Unit direction of travel of the ray that brought it; `w` is the number of its path, below 2^24, as a float.
     pub directions: Vec<Vec4>,
@@ -29,7 +31,26 @@ pub struct Traced {
     pub arrived: Vec<u32>,
 }
 
+/// Refuses more slots than [`MAX_SLOTS`].
+///
+/// # Errors
+/// [`Error::Refused`] with the numbers.
+pub fn check_slots(setting: &Setting) -> Result<()> {
+    let (slots, Setting { paths, hits, .. }) = (setting.slots(), setting);
+    if slots <= MAX_SLOTS {
+        return Ok(());
+    }
+    let need = format!("{paths} paths with {hits} hits need {slots} slots, and there are {MAX_SLOTS} at most");
+    Err(Error::too_large("the photons", need, "give fewer --paths or --hits"))
+}
+
 impl Photons {
+    /// As many empty slots.
+    pub fn empty(slots: usize) -> Photons {
+        let zeros = || vec![Vec4::ZERO; slots];
+        Photons { positions: zeros(), directions: zeros(), fluxes: zeros() }
+    }
+
     /// Photons or slots.
     pub fn len(&self) -> usize {
         self.positions.len()

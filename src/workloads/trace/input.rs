@@ -193,7 +193,10 @@ impl Input for TraceInput<'_> {
 }
 
 /// Builds a structure as often as the settings say; its time is the median.
-fn build(selection: &Selection, scene: &Arc<Scene>, context: &Context) -> Result<Built> {
+///
+/// # Errors
+/// Those of [`Selection::build`], [`Error::Interrupted`].
+pub fn build(selection: &Selection, scene: &Arc<Scene>, context: &Context) -> Result<Built> {
     context.emit(Event::Building(format!("building {} of {}", selection.name(), scene.name)));
     let settings = context.settings;
     let built = building::build_repeatedly(selection, scene, settings.threads, settings.builds, context.interrupted)?;

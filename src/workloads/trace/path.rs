@@ -89,7 +89,7 @@ fn shadow_ray(direction: ShadowRays, light: Vec3A, point: Vec3A, reach: f32) -> 
 }
 
 /// The light, or the point towards it at the greatest distance at which a shadow ray starts.
-fn shadow_start(light: Vec3A, point: Vec3A, reach: f32) -> Vec3A {
+pub(crate) fn shadow_start(light: Vec3A, point: Vec3A, reach: f32) -> Vec3A {
     let way = light - point;
     let distance = way.dot(way).sqrt();
     if distance > reach { point + way * (reach / distance) } else { light }

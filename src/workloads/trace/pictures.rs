@@ -33,7 +33,7 @@ pub(super) fn take(input: &TraceInput, device: &Device) -> Result<()> {
     let middle = &path.views[path.views.len() / 2];
     let moving = middle.camera.position != path.views[0].camera.position;
     let view = if moving { middle } else { &path.views[0] };
-    let size = size_like(TraceCase::parse(&input.first)?.size);
+    let size = TraceCase::parse(&input.first)?.size.with_longer_side(SIDE);
     let Size { width, height } = size;
     let render = || -> Result<(Vec<u8>, Vec<u8>)> {
         let method = Selection::parse(STRUCTURE)?.method();
@@ -97,11 +97,4 @@ pub fn per_pixel(
 /// The more kinds of rays, the richer.
 fn config_rank(config: Config) -> (u32, bool) {
     (config.bounces(), config.shadows())
-}
-
-/// A size of the same shape whose longer side is [`SIDE`].
-fn size_like(size: Size) -> Size {
-    let longer = u64::from(size.width.max(size.height).max(1));
-    let side = |length: u32| ((u64::from(length) * u64::from(SIDE) / longer) as u32).max(1);
-    Size { width: side(size.width), height: side(size.height) }
 }

@@ -11,7 +11,7 @@ fn load(spec: &str) -> Scene {
 #[test]
 fn all_are_listed_with_range_and_default() {
     let names: Vec<&str> = list().iter().map(|info| info.name).collect();
-    assert_eq!(names, ["scan", "terrain", "sphereflake", "stadium", "hall", "room"]);
+    assert_eq!(names, ["scan", "terrain", "sphereflake", "stadium", "hall", "room", "sphere", "box", "plane"]);
     for info in list() {
         assert!(!info.character.is_empty());
         for p in info.parameters {
@@ -135,7 +135,7 @@ fn scenes_have_the_described_properties() {
     assert!(thin > 0.02, "{thin}");
 
     // The lights of enclosed scenes are inside.
-    for scene in [&hall, &room] {
+    for scene in [&hall, &room, &load("sphere"), &load("box")] {
         let bounds = scene.bounds();
         for light in &scene.lights {
             assert!(light.position.cmpgt(bounds.min).all() && light.position.cmplt(bounds.max).all());

@@ -394,3 +394,50 @@ fn sponza_has_the_triangles_that_tobj_reads() {
     // tobj makes fans of all polygons; this reader does not if the fan does not cover the polygon.
     assert!(all == 66_450 && other < 500, "{other} of {all} differ");
 }
+
+#[test]
+fn materials_keep_their_names() {
+    let text = format!("mtllib a.mtl\n{SQUARE}f 1 2 3\nusemtl known\nf 1 3 4\nusemtl unknown\nf 2 3 4\n");
+    let library = b"newmtl unused\nnewmtl known\nKd 1 0 0\n";
+    let scene = load_with(&[("a.obj", text.as_bytes()), ("a.mtl", library)], "").unwrap();
+    assert_eq!(scene.material_names, ["unused", "known", "", "unknown"]);
+    let name = |triangle: usize| scene.material_names[scene.triangles[triangle].material as usize].as_str();
+    assert_eq!([0, 1, 2].map(name), ["", "known", "unknown"]);
+    scene.check().unwrap();
+    let wrong = Scene { material_names: vec![String::new()], ..scene.clone() };
+    assert!(wrong.check().unwrap_err().to_string().contains("names"));
+    // They are no part of a scene's identity
+    let nameless = Scene { material_names: Vec::new(), ..scene.clone() };
+    assert_eq!(nameless.content_hash(), scene.content_hash());
+    // Names in any encoding, with blanks and with comments that are none
+    let names = [SQUARE.as_bytes(), b"usemtl st\xe9in\nf 1 2 3\nusemtl a b # c\nf 1 2 3\n"].concat();
+    let scene = load_with(&[("a.obj", &names)], "").unwrap();
+    assert_eq!(scene.material_names, ["st\u{fffd}in", "a b # c"]);
+}
+
+#[test]
+fn joined_scenes_keep_the_names_of_those_that_have_some() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    for (name, text) in [
+        ("a.obj", format!("{SQUARE}usemtl stone\nf 1 2 3\n").as_str()),
+        ("b.ply", super::ply::CUBE),
+        ("c.obj", &format!("{SQUARE}usemtl glass\nf 1 2 3\n")),
+    ] {
+        std::fs::write(path(name), text).unwrap();
+    }
+    let names = |files: &[&str]| {
+        let scene = scene::load(&files.iter().map(|name| path(name)).collect::<Vec<_>>().join("+")).unwrap();
+        scene.check().unwrap();
+        scene.material_names
+    };
+    assert_eq!(names(&["a.obj", "b.ply", "c.obj"]), ["stone", "", "glass"]);
+    assert_eq!(names(&["b.ply", "a.obj"]), ["", "stone"]);
+    assert!(names(&["b.ply", "b.ply"]).is_empty());
+    // A cache does not hold them
+    let (scene, sources) = scene::cache::load(&path("a.obj"), None).unwrap();
+    let cache = folder.path().join("a.rtb");
+    scene::cache::write(&scene, &sources, &cache).unwrap();
+    let cached = scene::load(cache.to_str().unwrap()).unwrap();
+    assert!(cached.material_names.is_empty() && cached.content_hash() == scene.content_hash());
+}

@@ -1,4 +1,4 @@
-//! Casting rays that lie in a buffer: a pass of somebody else's frame.
+//! Rays that lie in a buffer are cast by a pass of another workload's frame.
 
 use super::kernels::Entry;
 use super::prepared::GpuPrepared;

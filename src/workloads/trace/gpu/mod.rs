@@ -8,7 +8,7 @@ mod rendering;
 mod shared;
 mod upload;
 
-pub use caster::{Cast, RayCaster};
+pub use caster::{Cast, HIT_BYTES, RayCaster};
 pub use shared::{CastJob, FrameUniform, WaitingPath};
 
 use crate::device::{DeviceInfo, VulkanDevice};

@@ -1,0 +1,225 @@
+//! A frame on a Vulkan device: passes over buffers that stay there, and are read back only to be checked.
+
+mod buffers;
+mod inputs;
+pub mod kernels;
+mod passes;
+mod uniforms;
+
+pub use kernels::{GROUP_SIZE, Kernel, kernels};
+pub use passes::MAX_TESTS;
+pub use uniforms::*;
+
+use super::Stages;
+use super::lit::LitScene;
+use super::photons::{Photons, Traced};
+use super::samples::Samples;
+use super::setting::{Estimate, Setting};
+use crate::camera::Camera;
+use crate::device::vulkan::{Buffer, Dispatch};
+use crate::device::{Frame, FrameTime, Interrupted, KernelInfo, Submissions, VulkanDevice};
+use crate::error::{Error, Result};
+use crate::workloads::size::Size;
+use crate::workloads::trace::gpu::RayCaster;
+use crate::workloads::trace::{Method, Structure};
+use buffers::{Buffers, Sizes};
+use glam::Vec4;
+use inputs::Inputs;
+use passes::{Maker, Passes};
+
+/// Frames whose cameras are on the device at a time.
+const MAX_FRAMES: usize = 256;
+
+/// The stages of a frame, in their order.
+pub fn stages(setting: Setting) -> Vec<&'static str> {
+    let hits = passes::HITS.iter().take(setting.hits as usize).map(|stage| stage.0);
+    hits.chain(["compaction", "samples", "direct", "estimate", "mix"]).collect()
+}
+
+/// A scene and a structure on a device, with everything that decides a frame but the camera.
+pub struct GpuFrame<'a> {
+    device: &'a VulkanDevice,
+    lit: &'a LitScene,
+    setting: Setting,
+    size: Size,
+    sizes: Sizes,
+    buffers: Buffers,
+    inputs: Inputs,
+    passes: Passes,
+    /// Bytes of vertices and materials, and of the structure.
+    scene_bytes: (u64, u64),
+    /// No frame has run since the buffers were poisoned.
+    is_poisoned: bool,
+}
+
+impl<'a> GpuFrame<'a> {
+    /// Uploads a scene and a structure, allocates all buffers and compiles all kernels.
+    ///
+    /// # Errors
+    /// [`Error::Refused`] for what the device cannot bind or walk, and for more slots than photons can have, before
+    /// anything is allocated; [`Error::Input`] for fewer paths than lights; the device's.
+    pub fn new(
+        device: &'a VulkanDevice,
+        lit: &'a LitScene,
+        structure: &'a dyn Structure,
+        method: Method,
+        setting: Setting,
+        estimate: Estimate,
+        size: Size,
+    ) -> Result<GpuFrame<'a>> {
+        let sizes = Sizes::new(&setting, size, device.max_binding())?;
+        let shares = lit.shares(setting.paths)?;
+        Buffers::check(device, &sizes)?;
+        let inputs = Inputs::new(device, lit, &shares, setting.falloff)?;
+        let caster = RayCaster::new(device, &lit.scene, structure, method)?;
+        let buffers = Buffers::new(device, &sizes)?;
+        let maker = Maker {
+            device,
+            caster: &caster,
+            lit,
+            setting: &setting,
+            estimate: &estimate,
+            sizes: &sizes,
+            buffers: &buffers,
+            inputs: &inputs,
+        };
+        let passes = maker.passes()?;
+        let scene_bytes = caster.allocated();
+        Ok(GpuFrame { device, lit, setting, size, sizes, buffers, inputs, passes, scene_bytes, is_poisoned: true })
+    }
+
+    /// The kernels, each once.
+    pub fn kernels(&self) -> Vec<KernelInfo> {
+        self.passes.kernels().to_vec()
+    }
+
+    /// Name and bytes of each buffer; the scene's and the structure's as one each.
+    pub fn buffers(&self) -> Vec<(&'static str, u64)> {
+        let mut all = Buffers::bytes(&self.sizes);
+        all.extend(self.inputs.bytes);
+        let scan = self.passes.scan().map_or(0, |scan| scan.allocated());
+        let (geometry, structure) = self.scene_bytes;
+        all.extend([("sums of groups", scan), ("geometry", geometry), ("structure", structure)]);
+        all
+    }
+
+    /// Renders frames one after another and times each. All buffers are poisoned before, and nothing is read back in
+    /// between.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`] between submissions, or the device's.
+    pub fn time(&mut self, cameras: &[Camera], interrupted: Interrupted) -> Result<Vec<FrameTime>> {
+        self.poison();
+        let mut times = Vec::with_capacity(cameras.len());
+        self.is_poisoned = cameras.is_empty();
+        for cameras in cameras.chunks(MAX_FRAMES) {
+            times.extend(self.run(cameras, |frames| self.device.run_frames(frames, interrupted))?);
+        }
+        Ok(times)
+    }
+
+    /// Renders a frame into poisoned buffers and reads back everything that it made.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`] between passes, or the device's.
+    pub fn render(&mut self, camera: &Camera, interrupted: Interrupted) -> Result<Stages> {
+        self.poison();
+        self.is_poisoned = false;
+        self.run(std::slice::from_ref(camera), |frames| {
+            frames.iter().try_for_each(|frame| self.device.run_until(frame, interrupted).map(drop))
+        })?;
+        let (slots, buffers) = (self.sizes.slots as usize, &self.buffers);
+        let photons = self.photons()?;
+        let arrived = self.device.read(&buffers.arrived, self.setting.hits as usize)?;
+        let slots =
+            self.read_photons([&buffers.slot_positions, &buffers.slot_directions, &buffers.slot_fluxes], slots)?;
+        Ok(Stages {
+            traced: Traced { slots, arrived },
+            photons: self.read_photons([&buffers.positions, &buffers.directions, &buffers.fluxes], photons)?,
+            samples: Samples {
+                positions: self.image(&buffers.samples)?,
+                normals: self.image(&buffers.normals)?,
+                albedos: self.image(&buffers.albedos)?,
+            },
+            direct: self.image(&buffers.direct)?,
+            irradiance: self.image(&buffers.irradiance)?,
+            picture: self.last()?,
+        })
+    }
+
+    /// The picture of the last frame, rows from the top.
+    ///
+    /// # Errors
+    /// The device's.
+    pub fn last(&self) -> Result<Vec<Vec4>> {
+        self.image(&self.buffers.picture)
+    }
+
+    /// The number of photons of the last frame.
+    ///
+    /// # Errors
+    /// The device's.
+    pub fn photons(&self) -> Result<usize> {
+        let scan = self.passes.scan().ok_or_else(|| Error::Device("a frame without compaction".into()))?;
+        Ok((scan.check(self.device)?.min(self.sizes.slots)) as usize)
+    }
+
+    /// The numbers of paths of the last frame that reached hit 1, 2, .. `hits`.
+    ///
+    /// # Errors
+    /// The device's.
+    pub fn arrived(&self) -> Result<Vec<u32>> {
+        self.device.read(&self.buffers.arrived, self.setting.hits as usize)
+    }
+
+    fn poison(&mut self) {
+        if !self.is_poisoned {
+            self.buffers.poison(self.device);
+            self.is_poisoned = true;
+        }
+    }
+
+    fn image(&self, buffer: &Buffer) -> Result<Vec<Vec4>> {
+        self.device.read(buffer, self.size.pixels())
+    }
+
+    fn read_photons(&self, arrays: [&Buffer; 3], count: usize) -> Result<Photons> {
+        let [positions, directions, fluxes] = arrays.map(|array| self.device.read(array, count));
+        Ok(Photons { positions: positions?, directions: directions?, fluxes: fluxes? })
+    }
+
+    /// Uploads cameras and hands their frames over.
+    fn run<T>(&self, cameras: &[Camera], work: impl FnOnce(&[Frame<Dispatch>]) -> Result<T>) -> Result<T> {
+        let stride = self.device.uniform_stride(size_of::<View>());
+        let mut uniforms = vec![0_u8; cameras.len() * stride as usize];
+        for (place, camera) in uniforms.chunks_exact_mut(stride as usize).zip(cameras) {
+            place[..size_of::<View>()].copy_from_slice(bytemuck::bytes_of(&self.view(camera)?));
+        }
+        let views = self.device.uniform("the cameras", &uniforms)?;
+        let bound = self.passes.bind_views(self.device, &views, &self.buffers, &self.inputs);
+        let bound = bound.ok_or_else(|| Error::Device("a frame without a camera".into()))?;
+        self.device.check()?;
+        let submissions = if self.passes.estimates > 1 { Submissions::PerPass } else { Submissions::PerFrame };
+        let offsets = (0..cameras.len() as u32).map(|frame| frame * stride);
+        let frames: Vec<Frame<Dispatch>> =
+            offsets.map(|offset| Frame { passes: self.passes.frame(&bound, offset), submissions }).collect();
+        work(&frames)
+    }
+
+    fn view(&self, camera: &Camera) -> Result<View> {
+        let Size { width, height } = self.size;
+        let grid = camera.pixel_grid(width, height);
+        Ok(View {
+            origin: grid.origin,
+            width,
+            corner: grid.corner,
+            pixels: self.sizes.pixels,
+            right: grid.right,
+            row_groups: self.device.groups_for(self.sizes.pixels.into(), GROUP_SIZE)?.0,
+            down: grid.down,
+            epsilon: self.lit.epsilon(),
+            forward: camera.direction,
+            pad: 0,
+        })
+    }
+}

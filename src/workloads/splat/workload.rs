@@ -1,0 +1,245 @@
+//! Photon splatting as a workload: its axes, and its plan.
+
+use super::case::SplatCase;
+use super::input::SplatInput;
+use super::photons::PHOTON_BYTES;
+use super::{Fault, gpu, memory};
+use crate::camera::CameraPath;
+use crate::device::Source;
+use crate::error::{Error, Result};
+use crate::harness::workload::{Axis, Case, Context, Info, Input, Library, Part, Workload};
+use crate::record::row::{Metric, Row, Value};
+use crate::record::statistics::{FrameStatistics, round};
+use crate::scene;
+use crate::workloads::{scan, size};
+use std::path::PathBuf;
+
+/// Name of the workload in keys.
+pub const WORKLOAD: &str = "splat";
+
+/// Most distances between samples and photons of a case in one pass.
+const BUDGET: u64 = 2_000_000_000_000;
+
+/// The workload.
+#[derive(Default)]
+pub struct Splat {
+    /// Planted into what a device made; absent outside of tests.
+    pub fault: Option<Fault>,
+    /// The folder of path-traced references, instead of the user's.
+    pub cache: Option<PathBuf>,
+}
+
+/// The one that the command line offers.
+pub static SPLAT: Splat = Splat { fault: None, cache: None };
+
+const fn axis(name: &'static str, value_name: &'static str, help: &'static str) -> Axis {
+    Axis { name, value_name, help, is_flag: true, in_label: true }
+}
+
+/// An axis whose values follow from another one's.
+const fn option(name: &'static str, help: &'static str) -> Axis {
+    Axis { name, value_name: "", help, is_flag: false, in_label: false }
+}
+
+/// A flag that is not a part of a row's name.
+const fn quiet(name: &'static str, value_name: &'static str, help: &'static str) -> Axis {
+    Axis { name, value_name, help, is_flag: true, in_label: false }
+}
+
+static INFO: Info = Info {
+    name: WORKLOAD,
+    summary: "Measure global illumination by photons: tracing, view samples, density estimates",
+    description: "Paths of light are traced through a structure, every hit but the first is stored as a photon, and \
+        the indirect light of each view sample is estimated from the photons around it. Each stage has its own time. \
+        Every array of a small frame is compared with its twin on the CPU, estimates with sums in double precision, \
+        and their mean with a path-traced reference. The only technique so far is reference: each sample over all \
+        photons.",
+    examples: "\
+Examples:
+  rtbench splat
+      the preset quick: built-in scenes, less than three minutes
+  rtbench splat --scene sponza --resolution 480x270 --radius 0.03,0.1 --frames 2
+      a scene of the catalogue, two radii
+  rtbench splat --scene box --technique reference:kernel=epanechnikov,reference:kernel=constant --paths 20000
+      two kernels of the estimate
+  rtbench splat --scene hall --light point:x=0,y=3,z=0,flux=100 --hits 6
+      a light of your own, paths of six hits
+
+The folder of results holds journal.jsonl (everything, one record per line), summary.csv, run.json and pictures of the
+scenes: all light, direct light, indirect light, and the photons.",
+    work_unit: "distance tests",
+    budget: Some(BUDGET),
+    has_library: true,
+    axes: &[
+        axis("scene", "FILE|NAME[:KEY=VALUE,..]", "Scene file, or name of a scene with options; may be repeated"),
+        axis(
+            "technique",
+            "NAME[:KEY=VALUE,..]",
+            "reference[:kernel=epanechnikov|constant,weight=side|cosine], or all; comma list [default: reference]",
+        ),
+        option("kernel", "Weight of a photon by its distance"),
+        option("weight", "Weight of a photon by its direction"),
+        axis("light", "point:x=,y=,z=[,flux=N|R/G/B]", "Light, or several joined by +, instead of the scene's"),
+        quiet("camera_path", "FILE|NAME", "Camera path for every scene, instead of each one's own"),
+        axis(
+            "structure",
+            "NAME[:KEY=VALUE,..]",
+            "What rays are traced through, as in `rtbench structures`; comma list [default: bvh-stack]",
+        ),
+        option("build", "Options of the builder"),
+        option("traversal", "Options of the traversal"),
+        option("ray_options", "Which rays there are, and the test against a triangle"),
+        option("device_options", "How the device works"),
+        axis("paths", "N", "Paths of light; comma list [default: 5667]"),
+        axis("hits", "N", "Most hits along a path, 2 to 16: all but the first are photons [default: 4]"),
+        axis("seed", "N", "Of the generator of random numbers [default: 1]"),
+        axis(
+            "radius",
+            "SHARE|Nu",
+            "Radius of photons: share of the extent's diagonal, or N units of the file [default: 0.03]",
+        ),
+        axis("falloff", "LIST", "square, source: how direct light falls off [default: square]"),
+        axis("energy", "LIST", "flux, shared: what a photon carries of its ray [default: flux]"),
+        axis("resolution", "N|WxH", "Image sizes in pixels; comma list"),
+        Axis { name: "frames", value_name: "N", help: "Frames of the camera path", is_flag: false, in_label: false },
+    ],
+    columns: &[
+        "width",
+        "height",
+        "triangles",
+        "photons",
+        "samples",
+        "distance_tests",
+        "mtests_per_s",
+        "stored_flux_share",
+        "irradiance_mean",
+        "direct_mean",
+        "path_traced_mean",
+        "path_traced_error",
+        "path_traced_error_pct",
+        "path_traced_paths",
+        "ratio_to_path_traced",
+        "rmse",
+        "buffer_bytes",
+        "hit-1_arrived",
+        "hit-2_arrived",
+        "hit-3_arrived",
+        "hit-4_arrived",
+        "hit-1_lost_pct",
+        "hit-2_lost_pct",
+        "hit-3_lost_pct",
+        "hit-4_lost_pct",
+        "photons_hash",
+        "image_hash",
+    ],
+    table: &[
+        ("resolution", "size"),
+        ("technique_label", "technique"),
+        ("structure_label", "structure"),
+        ("settings", "settings"),
+        ("photons", "photons"),
+        ("radius", "radius"),
+        ("frame_ms_mean", "mean ms"),
+        ("noise_pct", "noise %"),
+        ("mtests_per_s", "Mtests/s"),
+        ("ratio_to_path_traced", "ratio"),
+        ("path_traced_error_pct", "± %"),
+        ("rmse", "RMSE"),
+        ("result", "result"),
+    ],
+    table_groups: &["resolution"],
+    table_note: "Mtests/s: distances between samples and photons; ratio: mean irradiance / path-traced mean, which has \
+        the standard error ±; RMSE: root of the mean squared difference from it, in irradiance",
+    presets: &[
+        ("quick", include_str!("../../../presets/splat/quick.toml")),
+        ("splat-reference", include_str!("../../../presets/splat/splat-reference.toml")),
+    ],
+};
+
+impl Workload for Splat {
+    fn info(&self) -> &'static Info {
+        &INFO
+    }
+
+    fn absent(&self, scene: &str, library: &Library) -> Option<String> {
+        crate::workloads::trace::TRACE.absent(scene, library)
+    }
+
+    fn plan(&self, part: &Part, library: &Library) -> Result<Vec<Case>> {
+        if part.of("scene").is_empty() {
+            return Err(Error::argument("--scene", "no scene is given", "give --scene, or scene in the preset"));
+        }
+        let of_part = SplatCase::all(part)?;
+        for name in part.of("camera_path") {
+            CameraPath::load(name)?;
+        }
+        let mut cases = Vec::new();
+        for scene in part.of("scene") {
+            let scene = library.scene_time.map_or_else(|| scene.clone(), |time| scene::at_time(scene, time));
+            scene::probe(&scene, library.scenes_folder.as_deref())?;
+            cases.extend(of_part.iter().map(|case| case.to_case(&scene)));
+        }
+        Ok(cases)
+    }
+
+    fn needs(&self, cases: &[Case], _: &Library) -> Vec<String> {
+        let parsed: Vec<SplatCase> = cases.iter().filter_map(|case| SplatCase::parse(case).ok()).collect();
+        let mib = |bytes: u64| bytes.div_ceil(1 << 20);
+        let memory = parsed.iter().map(|case| memory::bytes(case.setting, case.size)).max();
+        let photons = parsed.iter().map(|case| case.setting.slots() * PHOTON_BYTES).max();
+        let mut needs = Vec::new();
+        needs.extend(memory.map(|bytes| format!("{} MiB of main memory for photons and images", mib(bytes))));
+        needs.extend(
+            photons.map(|bytes| format!("{} MiB of device memory for each of two sets of photons", mib(bytes))),
+        );
+        needs
+    }
+
+    fn open<'a>(&'a self, cases: &[Case], context: &'a Context<'a>) -> Result<Box<dyn Input + 'a>> {
+        Ok(Box::new(SplatInput::open(cases, context, self)?))
+    }
+
+    fn kernels(&self) -> Result<Vec<(String, Source)>> {
+        let mut kernels = gpu::kernels()?;
+        kernels.extend(scan::kernels()?);
+        Ok(kernels)
+    }
+
+    fn machine_metrics(&self) -> &'static [&'static str] {
+        &["build_threads", "path_traced_paths"]
+    }
+
+    fn derived(&self, row: &Row, frames: Option<&FrameStatistics>) -> Vec<Metric> {
+        let axis = |name: &str| row.key.axis(name);
+        let label = |name: &str, options: &[&str]| {
+            let options: Vec<&str> = options.iter().map(|name| axis(name)).filter(|value| !value.is_empty()).collect();
+            let colon = if options.is_empty() { "" } else { ":" };
+            format!("{}{colon}{}", axis(name), options.join(","))
+        };
+        let technique = super::technique::Technique::of_axes(|name| row.key.axis(name));
+        let technique = technique.map_or_else(|_| axis("technique").to_owned(), |technique| technique.to_string());
+        let structure = label("structure", &["build", "traversal", "ray_options", "device_options"]);
+        // What differs from the defaults and has no column of its own in the table
+        let usual = [("hits", "4"), ("seed", "1"), ("falloff", "square"), ("energy", "flux"), ("light", "")];
+        let unusual = usual.into_iter().filter(|(name, usual)| axis(name) != *usual);
+        let settings: Vec<String> = unusual.map(|(name, _)| format!("{name} {}", axis(name))).collect();
+        let mut derived = vec![
+            Metric::new("technique_label", technique),
+            Metric::new("structure_label", structure),
+            Metric::new("settings", settings.join(", ")),
+        ];
+        // In messages numbers have a name, and defaults are left out
+        for (name, usual) in usual.into_iter().chain([("paths", ""), ("radius", "")]) {
+            let value = axis(name);
+            let label = if value == usual { String::new() } else { format!("{name} {value}") };
+            derived.push(Metric::new(&format!("{name}_label"), label));
+        }
+        derived.extend(size::metrics(axis("resolution")));
+        let tests = row.metric(None, "distance_tests").and_then(Value::integer);
+        let frames = frames.filter(|frames| frames.mean_ms > 0.0);
+        if let Some((tests, frames)) = tests.zip(frames) {
+            derived.push(Metric::new("mtests_per_s", round(tests as f64 / frames.mean_ms / 1e3, 2)));
+        }
+        derived
+    }
+}
