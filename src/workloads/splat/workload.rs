@@ -206,7 +206,7 @@ impl Workload for Splat {
     }
 
     fn machine_metrics(&self) -> &'static [&'static str] {
-        &["build_threads", "path_traced_paths"]
+        &["build_threads", "path_traced_paths", "bytes", "buffer_bytes"]
     }
 
     fn derived(&self, row: &Row, frames: Option<&FrameStatistics>) -> Vec<Metric> {
