@@ -5,7 +5,7 @@ use super::conditions::ComparedRun;
 use crate::error::{Error, Result};
 use crate::record::row::Status;
 use crate::record::statistics::round;
-use crate::record::stream::{LeanRow, Name, Names};
+use crate::record::stream::{LeanRow, Name, Names, is_metric};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The static cost of each kernel, by its name.
@@ -107,7 +107,7 @@ pub(super) fn axes_text(names: &Names, axes: &[(Name, Name)]) -> String {
 /// Whole numbers by name, without those of the machine.
 pub(super) fn counts(names: &Names, exact: &[(Name, u64)], machine: &[String]) -> Counts {
     let named = exact.iter().map(|(name, value)| (names.text(*name).to_owned(), *value));
-    named.filter(|(name, _)| !machine.contains(name)).collect()
+    named.filter(|(name, _)| !is_metric(name, machine)).collect()
 }
 
 fn short(hash: &str) -> String {

@@ -67,7 +67,8 @@ pub trait Workload: Sync {
         Ok(Vec::new())
     }
 
-    /// Names of whole numbers among the metrics that depend on the machine, and are not compared as exact quantities.
+    /// Names of whole numbers among the metrics, of whole rows or of their parts, that depend on the machine: they are
+    /// not compared as exact quantities.
     fn machine_metrics(&self) -> &'static [&'static str] {
         &[]
     }

@@ -48,6 +48,19 @@ impl Names {
     pub fn text(&self, name: Name) -> &str {
         self.texts.get(name as usize).map_or("", |text| text)
     }
+
+    /// The numbers of all quantities that are one of these metrics ([`is_metric`]).
+    pub fn of_metrics(&self, metrics: &[String]) -> Vec<Name> {
+        let known = self.texts.iter().enumerate().filter(|(_, text)| is_metric(text, metrics));
+        known.map(|(name, _)| name as Name).collect()
+    }
+}
+
+/// True for the name of a quantity that is one of these metrics, of a whole row or of a part of it (`PART.METRIC`).
+pub fn is_metric(quantity: &str, metrics: &[String]) -> bool {
+    let is =
+        |metric: &String| quantity.strip_suffix(metric.as_str()).is_some_and(|of| of.is_empty() || of.ends_with('.'));
+    metrics.iter().any(is)
 }
 
 /// Frame times of a row, by the clock that was chosen for it.
@@ -284,5 +297,17 @@ impl<'a> Reader<'a> {
             Some(_) => Err(Error::file(self.path, None, "the run ended before all rows were measured", resume)),
             None => Err(Error::file(self.path, None, "the run has not ended: it has no last line", resume)),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_metric;
+
+    #[test]
+    fn a_metric_is_meant_with_and_without_a_part() {
+        let metrics = ["bytes".to_owned()];
+        assert!(is_metric("bytes", &metrics) && is_metric("light samples.bytes", &metrics));
+        assert!(!is_metric("structure_bytes", &metrics) && !is_metric("bytes.ms", &metrics));
     }
 }

@@ -21,8 +21,8 @@ type PairKey<'r> = (&'r [(Name, Name)], usize);
 /// measured under like conditions.
 pub fn compare(names: &mut Names, runs: Vec<ComparedRun>, sides: Vec<Side>, options: &Options) -> Result<Comparison> {
     check_workloads(&runs)?;
-    let machine: Vec<Name> = options.machine.iter().map(|name| names.intern(name)).collect();
     let names: &Names = names;
+    let machine = names.of_metrics(&options.machine);
     let role = |run: &ComparedRun, row: &LeanRow| run.run.provenance.role(row.device);
     let with_device = runs.iter().any(|run| run.run.rows.iter().any(|row| role(run, row) > 0));
     let mut places: HashMap<PairKey, usize, foldhash::fast::RandomState> = HashMap::default();
