@@ -52,8 +52,8 @@ static INFO: Info = Info {
     description: "Paths of light are traced through a structure, every hit but the first is stored as a photon, and \
         the indirect light of each view sample is estimated from the photons around it. Each stage has its own time. \
         Every array of a small frame is compared with its twin on the CPU, estimates with sums in double precision, \
-        and their mean with a path-traced reference. The only technique so far is reference: each sample over all \
-        photons.",
+        and their mean with a path-traced reference, which is kept in RTBENCH_CACHE or the user's folder for caches. \
+        The only technique so far is reference: each sample over all photons.",
     examples: "\
 Examples:
   rtbench splat
