@@ -6,6 +6,7 @@ pub mod size;
 pub mod spheres;
 pub mod splat;
 pub mod trace;
+pub mod words;
 
 use crate::device::Source;
 use crate::error::{Error, Result};

@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 use crate::harness::parse_list;
 use crate::harness::workload::{Case, Part};
 use crate::workloads::size::{Size, parse_size};
+use crate::workloads::words::{flag, name, word};
 
 /// What one row measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -36,26 +37,12 @@ const TRIPS: &str = "5";
 /// Frames where none are given.
 const FRAMES: usize = 4;
 
-/// A word of an axis.
-fn word<T: Copy>(axis: &str, all: &[(&str, T)], text: &str) -> Result<T> {
-    let found = all.iter().find(|(name, _)| *name == text).map(|(_, value)| *value);
-    found.ok_or_else(|| {
-        let names: Vec<&str> = all.iter().map(|(name, _)| *name).collect();
-        let flag = format!("--{}", axis.replace('_', "-"));
-        Error::argument(flag, format!("there is no value '{text}'"), format!("one of {}", names.join(", ")))
-    })
-}
-
 /// The values of an axis, or its default.
 fn words<T: Copy + PartialEq>(part: &Part, axis: &str, all: &[(&str, T)]) -> Result<Vec<T>> {
     match part.of(axis) {
         [] => Ok(vec![all[0].1]),
         texts => parse_list(texts, |text| word(axis, all, text)),
     }
-}
-
-fn name<T: PartialEq>(all: &[(&'static str, T)], value: T) -> &'static str {
-    all.iter().find(|(_, known)| *known == value).map_or("", |(name, _)| name)
 }
 
 fn parse_trips(text: &str) -> Result<u32> {
@@ -219,8 +206,7 @@ fn switches(part: &Part) -> Result<Vec<Options>> {
 /// Refuses switches of the command line that none of the renderers has.
 fn check_switches(part: &Part, renderers: &[Renderer]) -> Result<()> {
     let wrong = |axis: &str, who: &str| {
-        let flag = format!("--{}", axis.replace('_', "-"));
-        Error::argument(flag, format!("it is for {who} only"), "leave it out, or name such a --renderer")
+        Error::argument(flag(axis), format!("it is for {who} only"), "leave it out, or name such a --renderer")
     };
     let is_given = |axis: &str| part.given.contains(axis);
     if !renderers.iter().any(|renderer| renderer.is_simd())

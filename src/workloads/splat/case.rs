@@ -9,6 +9,7 @@ use crate::harness::parse_list;
 use crate::harness::workload::{Case, Part};
 use crate::workloads::size::{Size, parse_size};
 use crate::workloads::trace::Selection;
+use crate::workloads::words::{flag, name, word};
 
 /// What one row measures.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,23 +52,6 @@ const ALL_FRAMES: &str = "all";
 
 /// The value of the axes `light` and `camera_path` where the scene's own are taken.
 const OF_SCENE: &str = "";
-
-fn flag(axis: &str) -> String {
-    format!("--{}", axis.replace('_', "-"))
-}
-
-/// A word of an axis.
-fn word<T: Copy>(axis: &str, all: &[(&str, T)], text: &str) -> Result<T> {
-    let found = all.iter().find(|(name, _)| *name == text).map(|(_, value)| *value);
-    found.ok_or_else(|| {
-        let names: Vec<&str> = all.iter().map(|(name, _)| *name).collect();
-        Error::argument(flag(axis), format!("there is no value '{text}'"), format!("one of {}", names.join(", ")))
-    })
-}
-
-fn name<T: PartialEq>(all: &[(&'static str, T)], value: T) -> &'static str {
-    all.iter().find(|(_, known)| *known == value).map_or("", |(name, _)| name)
-}
 
 fn number(axis: &str, text: &str, range: std::ops::RangeInclusive<u32>) -> Result<u32> {
     let number = text.parse().ok().filter(|number| range.contains(number));

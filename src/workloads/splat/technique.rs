@@ -2,6 +2,7 @@
 
 use super::setting::{Estimate, EstimateKernel, Weight};
 use crate::error::{Error, Result};
+use crate::workloads::words::{list, name};
 use std::fmt;
 
 /// A technique with its options.
@@ -19,14 +20,6 @@ const REFERENCE: &str = "reference";
 const KERNELS: [(&str, EstimateKernel); 2] =
     [("epanechnikov", EstimateKernel::Epanechnikov), ("constant", EstimateKernel::Constant)];
 const WEIGHTS: [(&str, Weight); 2] = [("side", Weight::Side), ("cosine", Weight::Cosine)];
-
-fn names<T>(all: &[(&'static str, T)]) -> String {
-    all.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ")
-}
-
-fn name<T: PartialEq>(all: &[(&'static str, T)], value: T) -> &'static str {
-    all.iter().find(|(_, known)| *known == value).map_or("", |(name, _)| name)
-}
 
 impl Technique {
     /// Reads one element of a list of `--technique`; `all` is every technique without options.
@@ -58,11 +51,11 @@ impl Technique {
             match key {
                 "kernel" => {
                     let found = KERNELS.iter().find(|(name, _)| *name == value);
-                    technique.kernel = found.ok_or_else(|| no_value(names(&KERNELS)))?.1;
+                    technique.kernel = found.ok_or_else(|| no_value(list(&KERNELS)))?.1;
                 }
                 "weight" => {
                     let found = WEIGHTS.iter().find(|(name, _)| *name == value);
-                    technique.weight = found.ok_or_else(|| no_value(names(&WEIGHTS)))?.1;
+                    technique.weight = found.ok_or_else(|| no_value(list(&WEIGHTS)))?.1;
                 }
                 _ => return Err(wrong(format!("{of} has no option '{key}'"), "one of kernel, weight".into())),
             }
