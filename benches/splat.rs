@@ -33,8 +33,12 @@ fn frames(criterion: &mut Criterion) {
     let bounds = scene.bounds();
     let light = PointLight { position: bounds.center(), flux: glam::Vec3::ONE };
     let lit = LitScene { scene: Arc::new(scene), lights: vec![light], extent: bounds, warnings: Vec::new() };
-    let estimate =
-        Estimate { kernel: EstimateKernel::default(), weight: Weight::default(), radius: lit.diagonal() * 0.03 };
+    let estimate = Estimate {
+        kernel: EstimateKernel::default(),
+        weight: Weight::default(),
+        form: Default::default(),
+        radius: lit.diagonal() * 0.03,
+    };
     let size = Size { width: 64, height: 36 };
     let selection = Selection::parse("bvh-stack").expect("a name of the table");
     let built = selection.build(&lit.scene, 0).expect("a structure");

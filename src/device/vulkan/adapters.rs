@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 
 /// Optional features that an opened device has wherever its adapter offers them. Others are never requested: a driver
 /// may compile the same kernel otherwise with them. Half precision only adds a type, which few kernels use.
-pub const WANTED: Features = Features::of(&[Feature::Timestamps, Feature::Half]);
+pub const WANTED: Features = Features::of(&[Feature::Timestamps, Feature::Half, Feature::FloatAtomics]);
 
 /// A Vulkan adapter that was listed and can be opened.
 pub struct Adapter {

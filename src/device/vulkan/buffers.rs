@@ -5,7 +5,8 @@ use crate::device::POISON;
 use crate::error::{Error, Result};
 use bytemuck::{AnyBitPattern, NoUninit};
 
-/// Memory of a device.
+/// Memory of a device; a clone is the same memory.
+#[derive(Clone)]
 pub struct Buffer {
     pub(super) buffer: wgpu::Buffer,
     /// The bytes that were asked for; the allocation may be larger.

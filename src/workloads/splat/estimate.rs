@@ -3,7 +3,7 @@
 use super::photons::Photons;
 use super::random::flushed;
 use super::samples::Samples;
-use super::setting::{Estimate, EstimateKernel, Weight};
+use super::setting::{Estimate, EstimateKernel, Form, Weight};
 use crate::device::Interrupted;
 use crate::error::{Error, Result};
 use glam::Vec4;
@@ -29,9 +29,10 @@ impl Estimate {
 
     /// The kernel's value at distance 0.
     pub fn peak(&self) -> f32 {
-        match self.kernel {
-            EstimateKernel::Epanechnikov => 2.0 / (PI * self.radius2()),
-            EstimateKernel::Constant => 1.0 / (PI * self.radius2()),
+        match (self.form, self.kernel) {
+            (Form::Source, _) => 1.0,
+            (_, EstimateKernel::Epanechnikov) => 2.0 / (PI * self.radius2()),
+            (_, EstimateKernel::Constant) => 1.0 / (PI * self.radius2()),
         }
     }
 }

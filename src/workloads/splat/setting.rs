@@ -40,6 +40,16 @@ pub enum Weight {
     Cosine,
 }
 
+/// How far an estimate is normalised.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Form {
+    /// The kernel integrates to one, and sums of directions are divided by the photons' disc.
+    #[default]
+    Normalised,
+    /// As the source prints it: without 2 / (pi r^2) and 1 / (pi r^2).
+    Source,
+}
+
 /// A density estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
@@ -47,6 +57,8 @@ pub struct Estimate {
     pub kernel: EstimateKernel,
     /// By direction.
     pub weight: Weight,
+    /// Its factor.
+    pub form: Form,
     /// Of a photon, in the scene's units in memory; a photon exactly this far away does not count.
     pub radius: f32,
 }

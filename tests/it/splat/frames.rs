@@ -36,7 +36,12 @@ pub fn camera_of(scene: &Scene) -> Camera {
 
 /// An estimate whose radius is this share of the extent's diagonal.
 pub fn estimate(lit: &LitScene, share: f32) -> Estimate {
-    Estimate { kernel: EstimateKernel::default(), weight: Weight::default(), radius: lit.diagonal() * share }
+    Estimate {
+        kernel: EstimateKernel::default(),
+        weight: Weight::default(),
+        form: Default::default(),
+        radius: lit.diagonal() * share,
+    }
 }
 
 /// Quadrilaterals of two triangles each, with a material each.

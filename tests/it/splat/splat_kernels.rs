@@ -2,7 +2,7 @@
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use rtbench::math::Hit;
-use rtbench::workloads::splat::gpu::{self, Kernel};
+use rtbench::workloads::splat::gpu::{self, Kernel, Variant};
 use rtbench::workloads::splat::setting::Falloff;
 use rtbench::workloads::trace::backend::TraceRay;
 use std::mem::offset_of;
@@ -59,7 +59,26 @@ fn struct_layouts_agree() {
         Kernel::Samples,
         "View",
         View,
-        [origin, width, corner, pixels, right, row_groups, down, epsilon, forward, pad]
+        [
+            origin,
+            width,
+            corner,
+            pixels,
+            right,
+            row_groups,
+            down,
+            epsilon,
+            forward,
+            first_border,
+            axis_x,
+            height,
+            axis_y,
+            pad0,
+            axis_z,
+            pad1,
+            axes_origin,
+            margin
+        ]
     );
     same_layout!(Kernel::Shadow, "ShadowJob", ShadowJob, [light, reach, pixels, row_groups, pad0, pad1]);
     for falloff in [Falloff::Square, Falloff::Source] {

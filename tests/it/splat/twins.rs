@@ -108,7 +108,7 @@ fn one_photon_over_a_plane_is_its_kernel() {
     let slanted = Vec3::new(0.6, -0.8, 0.0);
     for kernel in KERNELS {
         for (weight, factor) in [(Weight::Side, 1.0), (Weight::Cosine, 0.8)] {
-            let estimate = Estimate { kernel, weight, radius };
+            let estimate = Estimate { kernel, weight, form: Default::default(), radius };
             let found = irradiance(&samples, &one_photon(center, slanted, flux), &estimate);
             let mut integral = Vec4::ZERO;
             for (position, found) in samples.positions.iter().zip(&found) {
@@ -145,7 +145,8 @@ fn one_photon_over_a_plane_is_its_kernel() {
     // A pixel without a sample stays dark, even where a photon is
     let mut empty = lattice(Vec3::ZERO, 1, 1.0);
     (empty.positions[0], empty.normals[0]) = (Vec4::ZERO, Vec4::ZERO);
-    let estimate = Estimate { kernel: EstimateKernel::Constant, weight: Weight::Side, radius };
+    let estimate =
+        Estimate { kernel: EstimateKernel::Constant, weight: Weight::Side, form: Default::default(), radius };
     assert_eq!(irradiance(&empty, &one_photon(Vec3::ZERO, Vec3::NEG_Y, flux), &estimate), [Vec4::ZERO]);
     let stopped = reference::irradiance(device.pool(), &empty, &Photons::default(), &estimate, &|| true);
     assert!(matches!(stopped, Err(rtbench::Error::Interrupted)));
@@ -162,7 +163,8 @@ fn many_photons_are_added_by_blocks() {
         fluxes: vec![flux.extend(0.0); count],
     };
     let samples = lattice(Vec3::ZERO, 1, 1.0);
-    let estimate = Estimate { kernel: EstimateKernel::Constant, weight: Weight::Side, radius: 0.7 };
+    let estimate =
+        Estimate { kernel: EstimateKernel::Constant, weight: Weight::Side, form: Default::default(), radius: 0.7 };
     let found = reference::irradiance(device.pool(), &samples, &photons, &estimate, &|| false).unwrap()[0];
     let exact = exact::irradiance(device.pool(), &samples, &photons, &estimate, &[0], &|| false).unwrap()[0];
     assert_eq!((exact.photons, exact.blocks), (100_000, 391));

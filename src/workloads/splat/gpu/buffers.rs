@@ -13,7 +13,7 @@ const VEC4_BYTES: u64 = 16;
 
 /// How many elements the buffers have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Sizes {
+pub struct Sizes {
     /// Paths, in batches whose rays fit a binding.
     pub paths: u32,
     /// Paths of a batch.
@@ -42,17 +42,18 @@ impl Sizes {
     }
 }
 
-/// Makes the struct of the buffers, each with its bytes by [`Sizes`].
+/// Makes a struct of buffers that passes of a frame write, each with its bytes by the sizes of a frame.
 macro_rules! buffers {
-    ($($(#[doc = $meaning:literal])+ $field:ident, $name:literal: $bytes:expr, $hint:ident;)+) => {
-        /// The buffers that passes of a frame write.
-        pub(super) struct Buffers {
+    ($(#[doc = $about:literal])+ $buffers:ident of $sizes:ty;
+     $($(#[doc = $meaning:literal])+ $field:ident, $name:literal: $bytes:expr, $hint:expr;)+) => {
+        $(#[doc = $about])+
+        pub struct $buffers {
             $($(#[doc = $meaning])+ pub $field: Buffer,)+
         }
 
-        impl Buffers {
+        impl $buffers {
             /// Name and bytes of each buffer.
-            pub fn bytes(sizes: &Sizes) -> Vec<(&'static str, u64)> {
+            pub fn bytes(sizes: &$sizes) -> Vec<(&'static str, u64)> {
                 vec![$(($name, ($bytes)(sizes))),+]
             }
 
@@ -60,7 +61,7 @@ macro_rules! buffers {
             ///
             /// # Errors
             /// [`crate::Error::Refused`].
-            pub fn check(device: &VulkanDevice, sizes: &Sizes) -> Result<()> {
+            pub fn check(device: &VulkanDevice, sizes: &$sizes) -> Result<()> {
                 $(device.check_size(concat!("the ", $name), ($bytes)(sizes), $hint)?;)+
                 Ok(())
             }
@@ -69,8 +70,8 @@ macro_rules! buffers {
             ///
             /// # Errors
             /// The device's.
-            pub fn new(device: &VulkanDevice, sizes: &Sizes) -> Result<Buffers> {
-                Ok(Buffers { $($field: device.poisoned(concat!("the ", $name), ($bytes)(sizes))?,)+ })
+            pub fn new(device: &VulkanDevice, sizes: &$sizes) -> Result<$buffers> {
+                Ok($buffers { $($field: device.poisoned(concat!("the ", $name), ($bytes)(sizes))?,)+ })
             }
 
             /// Poisons everything.
@@ -81,10 +82,14 @@ macro_rules! buffers {
     };
 }
 
+pub(super) use buffers;
+
 const PATHS: &str = "give fewer --paths or --hits";
-const PIXELS: &str = "use a smaller image";
+pub(super) const PIXELS: &str = "use a smaller image";
 
 buffers! {
+    /// The buffers of all techniques.
+    Buffers of Sizes;
     /// Holds the rays of the paths of a batch.
     rays, "rays of paths": |sizes: &Sizes| u64::from(sizes.batch) * RAY_BYTES, PATHS;
     /// Holds what those rays hit.

@@ -1,5 +1,6 @@
 //! Kernel variants of a frame.
 
+use super::steps::Variant;
 use crate::device::vulkan::{Binding, BindingKind};
 use crate::device::{Constants, Source, assemble};
 use crate::error::{Error, Result};
@@ -57,7 +58,7 @@ impl Kernel {
     }
 
     /// A name for labels and messages, such as `estimate constant cosine`.
-    pub fn label(self) -> String {
+    fn name(self) -> String {
         let name = self.file().trim_start_matches("splat/").trim_end_matches(".wgsl");
         let options = match self {
             Kernel::Direct(Falloff::Square) => " square",
@@ -70,12 +71,14 @@ impl Kernel {
         };
         format!("{name}{options}")
     }
+}
 
-    /// The WGSL of this variant.
-    ///
-    /// # Errors
-    /// [`Error::Device`] for an include that does not exist (a mistake in `kernels/`).
-    pub fn assemble(self) -> Result<Source> {
+impl Variant for Kernel {
+    fn label(&self) -> String {
+        self.name()
+    }
+
+    fn assemble(&self) -> Result<Source> {
         let mut constants = Constants::default();
         constants.unsigned("GROUP_SIZE", GROUP_SIZE);
         constants.unsigned("MAX_HITS", MAX_HITS);
@@ -87,7 +90,7 @@ impl Kernel {
         constants.float("SLACK", math::SLACK);
         constants.flag("SOFTWARE", false);
         let mut slots = vec![("intersect", "trace/intersect/watertight.wgsl")];
-        match self {
+        match *self {
             Kernel::Direct(Falloff::Square) => slots.push(("falloff", "splat/falloff_square.wgsl")),
             Kernel::Direct(Falloff::Source) => slots.push(("falloff", "splat/falloff_source.wgsl")),
             Kernel::Estimate(kernel, weight) => {
@@ -100,9 +103,8 @@ impl Kernel {
         assemble(FILES, self.file(), &slots, constants).map_err(Error::Device)
     }
 
-    /// The bindings that its text declares.
-    pub(super) fn layout(self) -> Vec<Binding> {
-        let kinds: &[BindingKind] = match self {
+    fn layout(&self) -> Vec<Binding> {
+        let kinds: &[BindingKind] = match *self {
             Kernel::Emit => &[Uniform, Read, ReadWrite, ReadWrite, ReadWrite],
             Kernel::Bounce => &[Uniform, Read, Read, ReadWrite, ReadWrite, ReadWrite, ReadWrite, ReadWrite, ReadWrite],
             Kernel::Flags => &[Uniform, Read, ReadWrite],

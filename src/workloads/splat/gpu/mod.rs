@@ -1,16 +1,22 @@
 //! A frame on a Vulkan device: passes over buffers that stay there, and are read back only to be checked.
 
 mod buffers;
+pub mod clusters;
 mod inputs;
 pub mod kernels;
 mod passes;
+pub mod splatting;
+mod steps;
 mod uniforms;
 
 pub use kernels::{GROUP_SIZE, Kernel, kernels};
 pub use passes::MAX_TESTS;
+pub use steps::{Count, Steps, Variant};
 pub use uniforms::*;
 
 use super::Stages;
+use super::clusters::Placement;
+use super::clusters::setting::Space;
 use super::lit::LitScene;
 use super::photons::{Photons, Traced};
 use super::samples::Samples;
@@ -25,7 +31,7 @@ use crate::workloads::trace::{Method, Structure};
 use buffers::{Buffers, Sizes};
 use glam::Vec4;
 use inputs::Inputs;
-use passes::{Maker, Passes};
+use passes::Maker;
 
 /// Frames whose cameras are on the device at a time.
 const MAX_FRAMES: usize = 256;
@@ -45,7 +51,7 @@ pub struct GpuFrame<'a> {
     sizes: Sizes,
     buffers: Buffers,
     inputs: Inputs,
-    passes: Passes,
+    steps: Steps<'a>,
     /// Bytes of vertices and materials, and of the structure.
     scene_bytes: (u64, u64),
     /// No frame has run since the buffers were poisoned.
@@ -83,21 +89,21 @@ impl<'a> GpuFrame<'a> {
             buffers: &buffers,
             inputs: &inputs,
         };
-        let passes = maker.passes()?;
+        let steps = maker.steps()?;
         let scene_bytes = caster.allocated();
-        Ok(GpuFrame { device, lit, setting, size, sizes, buffers, inputs, passes, scene_bytes, is_poisoned: true })
+        Ok(GpuFrame { device, lit, setting, size, sizes, buffers, inputs, steps, scene_bytes, is_poisoned: true })
     }
 
     /// The kernels, each once.
     pub fn kernels(&self) -> Vec<KernelInfo> {
-        self.passes.kernels().to_vec()
+        self.steps.kernels().to_vec()
     }
 
     /// Name and bytes of each buffer; the scene's and the structure's as one each.
     pub fn buffers(&self) -> Vec<(&'static str, u64)> {
         let mut all = Buffers::bytes(&self.sizes);
         all.extend(self.inputs.bytes);
-        let scan = self.passes.scan().map_or(0, |scan| scan.allocated());
+        let scan = self.steps.scan_bytes();
         let (geometry, structure) = self.scene_bytes;
         all.extend([("sums of groups", scan), ("geometry", geometry), ("structure", structure)]);
         all
@@ -160,7 +166,11 @@ impl<'a> GpuFrame<'a> {
     /// # Errors
     /// The device's.
     pub fn photons(&self) -> Result<usize> {
-        let scan = self.passes.scan().ok_or_else(|| Error::Device("a frame without compaction".into()))?;
+        let scan = self
+            .steps
+            .scans(passes::COMPACTION)
+            .next()
+            .ok_or_else(|| Error::Device("a frame without compaction".into()))?;
         Ok((scan.check(self.device)?.min(self.sizes.slots)) as usize)
     }
 
@@ -196,19 +206,21 @@ impl<'a> GpuFrame<'a> {
             place[..size_of::<View>()].copy_from_slice(bytemuck::bytes_of(&self.view(camera)?));
         }
         let views = self.device.uniform("the cameras", &uniforms)?;
-        let bound = self.passes.bind_views(self.device, &views, &self.buffers, &self.inputs);
-        let bound = bound.ok_or_else(|| Error::Device("a frame without a camera".into()))?;
+        let borders = self.device.storage("the borders of slices", &[0.0_f32])?;
+        let bound = self.steps.bind_views(&views, &borders);
         self.device.check()?;
-        let submissions = if self.passes.estimates > 1 { Submissions::PerPass } else { Submissions::PerFrame };
+        let submissions =
+            if self.steps.count(passes::ESTIMATE) > 1 { Submissions::PerPass } else { Submissions::PerFrame };
         let offsets = (0..cameras.len() as u32).map(|frame| frame * stride);
         let frames: Vec<Frame<Dispatch>> =
-            offsets.map(|offset| Frame { passes: self.passes.frame(&bound, offset), submissions }).collect();
+            offsets.map(|offset| Frame { passes: self.steps.frame(&bound, offset), submissions }).collect();
         work(&frames)
     }
 
     fn view(&self, camera: &Camera) -> Result<View> {
         let Size { width, height } = self.size;
         let grid = camera.pixel_grid(width, height);
+        let placement = Placement::new(Space::default(), camera, self.lit.extent);
         Ok(View {
             origin: grid.origin,
             width,
@@ -219,7 +231,15 @@ impl<'a> GpuFrame<'a> {
             down: grid.down,
             epsilon: self.lit.epsilon(),
             forward: camera.direction,
-            pad: 0,
+            first_border: 0,
+            axis_x: placement.axes[0],
+            height,
+            axis_y: placement.axes[1],
+            pad0: 0,
+            axis_z: placement.axes[2],
+            pad1: 0,
+            axes_origin: placement.origin,
+            margin: placement.margin,
         })
     }
 }

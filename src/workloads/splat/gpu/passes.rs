@@ -3,18 +3,17 @@
 use super::buffers::{Buffers, Sizes};
 use super::inputs::Inputs;
 use super::kernels::{GROUP_SIZE, Kernel};
+use super::steps::{Count, Steps};
 use super::uniforms::*;
-use crate::device::vulkan::{Bindings, Buffer, Dispatch, Groups, Pipeline, PipelineDescription, Resource};
-use crate::device::{KernelInfo, Pass, Stage, VulkanDevice};
+use crate::device::vulkan::Buffer;
+use crate::device::{Stage, VulkanDevice};
 use crate::error::Result;
 use crate::workloads::scan::{self, Scan};
 use crate::workloads::splat::direct::lamps;
 use crate::workloads::splat::lit::LitScene;
 use crate::workloads::splat::setting::{Estimate, MAX_HITS, Setting};
-use crate::workloads::trace::gpu::{Cast, RayCaster};
-use bytemuck::Pod;
+use crate::workloads::trace::gpu::RayCaster;
 use std::f32::consts::FRAC_1_PI;
-use std::sync::Arc;
 
 /// The stages of hits; paths leave the lights in the first.
 pub const HITS: [Stage; MAX_HITS as usize] = [
@@ -35,33 +34,18 @@ pub const HITS: [Stage; MAX_HITS as usize] = [
     Stage("hit-15"),
     Stage("hit-16"),
 ];
-const COMPACTION: Stage = Stage("compaction");
+pub(super) const COMPACTION: Stage = Stage("compaction");
 const SAMPLES: Stage = Stage("samples");
 const DIRECT: Stage = Stage("direct");
-const ESTIMATE: Stage = Stage("estimate");
+pub(super) const ESTIMATE: Stage = Stage("estimate");
 const MIX: Stage = Stage("mix");
 
 /// Most distances between photons and samples that a dispatch of the estimate tests.
 pub const MAX_TESTS: u64 = 1 << 33;
 
-/// A pass, or passes of other modules.
-enum Step {
-    Own(Stage, OwnPass),
-    Cast(Stage, Cast),
-    Scan(Scan),
-}
-
-struct OwnPass {
-    pipeline: Arc<Pipeline>,
-    /// `None` where the camera is bound, which each run does anew.
-    bindings: Option<Bindings>,
-    groups: (u32, u32),
-    kernel: Kernel,
-}
-
 /// What passes are made of.
-pub(super) struct Maker<'a> {
-    pub device: &'a VulkanDevice,
+pub(super) struct Maker<'a, 'd> {
+    pub device: &'d VulkanDevice,
     pub caster: &'a RayCaster<'a>,
     pub lit: &'a LitScene,
     pub setting: &'a Setting,
@@ -71,44 +55,30 @@ pub(super) struct Maker<'a> {
     pub inputs: &'a Inputs,
 }
 
-/// The passes of a frame with their bindings, but for the camera's.
-pub(super) struct Passes {
-    steps: Vec<Step>,
-    kernels: Vec<KernelInfo>,
-    /// Dispatches of the estimate.
-    pub estimates: usize,
-}
-
-/// The bindings of the passes that read the camera.
-pub(super) struct ViewBindings {
-    camera: Bindings,
-    samples: Bindings,
-}
-
-impl Maker<'_> {
+impl<'d> Maker<'_, 'd> {
     /// Makes the passes.
     ///
     /// # Errors
     /// The device's.
-    pub fn passes(&self) -> Result<Passes> {
-        let mut passes = Passes { steps: Vec::new(), kernels: Vec::new(), estimates: 0 };
-        self.photons(&mut passes)?;
-        self.compaction(&mut passes)?;
-        self.samples(&mut passes)?;
-        self.direct(&mut passes)?;
-        self.estimates(&mut passes)?;
+    pub fn steps(&self) -> Result<Steps<'d>> {
+        let mut steps = Steps::new(self.device);
+        self.photons(&mut steps)?;
+        let photons = self.compaction(&mut steps)?;
+        self.samples(&mut steps)?;
+        self.direct(&mut steps)?;
+        self.estimates(&mut steps, &photons)?;
         let (buffers, count) = (self.buffers, self.sizes.pixels);
         let job = List { inverse_pi: FRAC_1_PI, ..self.list(count)? };
         let bound = [&buffers.albedos, &buffers.direct, &buffers.irradiance, &buffers.picture];
-        self.add(&mut passes, MIX, Kernel::Mix, count, job, &bound)?;
-        passes
-            .kernels
-            .extend([false, true].map(|any_hit| self.caster.kernel(any_hit)).into_iter().collect::<Result<Vec<_>>>()?);
+        steps.add(MIX, &Kernel::Mix, Count::Elements(count), job, &bound)?;
+        for any_hit in [false, true] {
+            steps.know(self.caster.kernel(any_hit)?);
+        }
         self.device.check()?;
-        Ok(passes)
+        Ok(steps)
     }
 
-    fn photons(&self, passes: &mut Passes) -> Result<()> {
+    fn photons(&self, steps: &mut Steps) -> Result<()> {
         let (buffers, inputs, setting) = (self.buffers, self.inputs, self.setting);
         let lights = self.lit.lights.len() as u32;
         for (first_path, paths) in self.sizes.batches() {
@@ -116,10 +86,10 @@ impl Maker<'_> {
             let is_first = u32::from(first_path == 0);
             let job = EmitJob { seed: setting.seed, first_path, paths, row_groups, lights, is_first, pad0: 0, pad1: 0 };
             let bound = [&inputs.sources, &buffers.rays, &buffers.carried, &buffers.arrived];
-            self.add(passes, HITS[0], Kernel::Emit, paths, job, &bound)?;
+            steps.add(HITS[0], &Kernel::Emit, Count::Elements(paths), job, &bound)?;
             for number in 1..=setting.hits {
                 let stage = HITS[number as usize - 1];
-                passes.steps.push(Step::Cast(stage, self.caster.cast(&buffers.rays, &buffers.hits, paths, None)?));
+                steps.cast(stage, self.caster.cast(&buffers.rays, &buffers.hits, paths, None)?);
                 let job = BounceJob {
                     seed: setting.seed,
                     first_path,
@@ -141,19 +111,19 @@ impl Maker<'_> {
                     slots[2],
                     &buffers.arrived,
                 ];
-                self.add(passes, stage, Kernel::Bounce, paths, job, &bound)?;
+                steps.add(stage, &Kernel::Bounce, Count::Elements(paths), job, &bound)?;
             }
         }
         Ok(())
     }
 
-    fn compaction(&self, passes: &mut Passes) -> Result<()> {
+    fn compaction(&self, steps: &mut Steps) -> Result<Buffer> {
         let (buffers, slots) = (self.buffers, self.sizes.slots);
         let flags = [&buffers.slot_positions, &buffers.places];
-        self.add(passes, COMPACTION, Kernel::Flags, slots, self.list(slots)?, &flags)?;
+        steps.add(COMPACTION, &Kernel::Flags, Count::Elements(slots), self.list(slots)?, &flags)?;
         let scan = Scan::in_place(self.device, scan::Options { subgroups: false }, &buffers.places, slots)?;
-        passes.kernels.extend(scan.kernels().iter().cloned());
-        passes.steps.push(Step::Scan(scan));
+        let photons = scan.total().clone();
+        steps.scan(COMPACTION, scan);
         let bound = [
             &buffers.slot_positions,
             &buffers.slot_directions,
@@ -163,26 +133,41 @@ impl Maker<'_> {
             &buffers.directions,
             &buffers.fluxes,
         ];
-        self.add(passes, COMPACTION, Kernel::Scatter, slots, self.list(slots)?, &bound)
+        steps.add(COMPACTION, &Kernel::Scatter, Count::Elements(slots), self.list(slots)?, &bound)?;
+        Ok(photons)
     }
 
-    fn samples(&self, passes: &mut Passes) -> Result<()> {
+    fn samples(&self, steps: &mut Steps) -> Result<()> {
         let (buffers, pixels) = (self.buffers, self.sizes.pixels);
-        self.add_unbound(passes, SAMPLES, Kernel::Camera, pixels)?;
+        steps.add_view(SAMPLES, &Kernel::Camera, pixels, &[&buffers.view_rays])?;
         let cast = self.caster.cast(&buffers.view_rays, &buffers.view_hits, pixels, None)?;
-        passes.steps.push(Step::Cast(SAMPLES, cast));
-        self.add_unbound(passes, SAMPLES, Kernel::Samples, pixels)
+        steps.cast(SAMPLES, cast);
+        let bound = [
+            &self.inputs.facets,
+            &buffers.view_rays,
+            &buffers.view_hits,
+            &buffers.samples,
+            &buffers.normals,
+            &buffers.albedos,
+        ];
+        steps.add_view(SAMPLES, &Kernel::Samples, pixels, &bound)
     }
 
-    fn direct(&self, passes: &mut Passes) -> Result<()> {
+    fn direct(&self, steps: &mut Steps) -> Result<()> {
         let (buffers, pixels) = (self.buffers, self.sizes.pixels);
         let row_groups = self.device.groups_for(pixels.into(), GROUP_SIZE)?.0;
         for (index, lamp) in lamps(self.lit, self.setting.falloff).into_iter().enumerate() {
             let (light, reach) = (lamp.position, self.lit.reach());
             let job = ShadowJob { light, reach, pixels, row_groups, pad0: 0, pad1: 0 };
-            self.add(passes, DIRECT, Kernel::Shadow, pixels, job, &[&buffers.samples, &buffers.shadow_rays])?;
+            steps.add(
+                DIRECT,
+                &Kernel::Shadow,
+                Count::Elements(pixels),
+                job,
+                &[&buffers.samples, &buffers.shadow_rays],
+            )?;
             let cast = self.caster.cast(&buffers.shadow_rays, &buffers.shadow_hits, pixels, Some(1.0))?;
-            passes.steps.push(Step::Cast(DIRECT, cast));
+            steps.cast(DIRECT, cast);
             let job = DirectJob {
                 light,
                 pixels,
@@ -198,17 +183,13 @@ impl Maker<'_> {
             if let Some(highlights) = &self.inputs.highlights {
                 bound.extend([&buffers.view_rays, &buffers.view_hits, highlights]);
             }
-            self.add(passes, DIRECT, Kernel::Direct(self.setting.falloff), pixels, job, &bound)?;
+            steps.add(DIRECT, &Kernel::Direct(self.setting.falloff), Count::Elements(pixels), job, &bound)?;
         }
         Ok(())
     }
 
-    fn estimates(&self, passes: &mut Passes) -> Result<()> {
+    fn estimates(&self, steps: &mut Steps, photons: &Buffer) -> Result<()> {
         let (buffers, Sizes { slots, pixels, .. }) = (self.buffers, *self.sizes);
-        let scan = passes.steps.iter().find_map(|step| if let Step::Scan(scan) = step { Some(scan) } else { None });
-        let Some(photons) = scan.map(Scan::total) else { return Ok(()) };
-        // Made apart from the others, since the number of photons is borrowed of them
-        let mut made = Passes { steps: Vec::new(), kernels: Vec::new(), estimates: 0 };
         let kernel = Kernel::Estimate(self.estimate.kernel, self.estimate.weight);
         for (first_pixel, end_pixel) in parts(pixels, slots) {
             let count = end_pixel - first_pixel;
@@ -231,54 +212,14 @@ impl Maker<'_> {
                 photons,
                 &buffers.irradiance,
             ];
-            self.add(&mut made, ESTIMATE, kernel, count, job, &bound)?;
+            steps.add(ESTIMATE, &kernel, Count::Elements(count), job, &bound)?;
         }
-        passes.estimates = made.steps.len();
-        passes.steps.append(&mut made.steps);
-        passes.kernels.append(&mut made.kernels);
         Ok(())
     }
 
     fn list(&self, count: u32) -> Result<List> {
         let row_groups = self.device.groups_for(count.into(), GROUP_SIZE)?.0;
         Ok(List { count, row_groups, inverse_pi: 0.0, pad: 0 })
-    }
-
-    /// Adds a pass with its uniform and its buffers, which have the numbers from 1.
-    fn add<J: Pod>(
-        &self,
-        passes: &mut Passes,
-        stage: Stage,
-        kernel: Kernel,
-        count: u32,
-        job: J,
-        buffers: &[&Buffer],
-    ) -> Result<()> {
-        self.add_unbound(passes, stage, kernel, count)?;
-        let job = self.device.uniform("the job", &[job])?;
-        if let Some(Step::Own(_, pass)) = passes.steps.last_mut() {
-            pass.bindings = Some(bind(self.device, &pass.pipeline, Resource::from(&job), buffers));
-        }
-        Ok(())
-    }
-
-    fn add_unbound(&self, passes: &mut Passes, stage: Stage, kernel: Kernel, count: u32) -> Result<()> {
-        let source = kernel.assemble()?;
-        let pipeline = self.device.pipeline(&PipelineDescription {
-            label: &kernel.label(),
-            text: &source.text,
-            layout: &kernel.layout(),
-            checked: false,
-            zero_workgroup_memory: false,
-        })?;
-        let checked = self.device.options().checked;
-        let info = KernelInfo { hash: source.hash(), fetch: "buffers".to_owned(), checked };
-        if !passes.kernels.contains(&info) {
-            passes.kernels.push(info);
-        }
-        let groups = self.device.groups_for(count.into(), GROUP_SIZE)?;
-        passes.steps.push(Step::Own(stage, OwnPass { pipeline, bindings: None, groups, kernel }));
-        Ok(())
     }
 }
 
@@ -287,70 +228,6 @@ pub(super) fn parts(pixels: u32, slots: u32) -> impl Iterator<Item = (u32, u32)>
     let most = MAX_TESTS / u64::from(slots.max(1)) / u64::from(GROUP_SIZE) * u64::from(GROUP_SIZE);
     let most = most.clamp(GROUP_SIZE.into(), u64::from(u32::MAX / 2)) as u32;
     (0..pixels).step_by(most as usize).map(move |first| (first, (first + most).min(pixels)))
-}
-
-fn bind(device: &VulkanDevice, pipeline: &Pipeline, first: Resource, buffers: &[&Buffer]) -> Bindings {
-    let mut resources = vec![(0, first)];
-    resources.extend((1..).zip(buffers).map(|(number, &buffer)| (number, Resource::from(buffer))));
-    device.bind(pipeline, &resources)
-}
-
-impl Passes {
-    /// Binds the cameras of a run, of which `views` has a window for each.
-    pub fn bind_views(
-        &self,
-        device: &VulkanDevice,
-        views: &Buffer,
-        buffers: &Buffers,
-        inputs: &Inputs,
-    ) -> Option<ViewBindings> {
-        let bound = |wanted: Kernel, buffers: &[&Buffer]| {
-            let pipeline = self.steps.iter().find_map(|step| match step {
-                Step::Own(_, pass) if pass.kernel == wanted => Some(&pass.pipeline),
-                _ => None,
-            })?;
-            Some(bind(device, pipeline, Resource::Window(views, size_of::<View>() as u64), buffers))
-        };
-        let seen = [&inputs.facets, &buffers.view_rays, &buffers.view_hits];
-        Some(ViewBindings {
-            camera: bound(Kernel::Camera, &[&buffers.view_rays])?,
-            samples: bound(
-                Kernel::Samples,
-                &[seen[0], seen[1], seen[2], &buffers.samples, &buffers.normals, &buffers.albedos],
-            )?,
-        })
-    }
-
-    /// The passes of a frame whose camera is at `offset` of the views.
-    pub fn frame<'s>(&'s self, views: &'s ViewBindings, offset: u32) -> Vec<Pass<Dispatch<'s>>> {
-        let mut passes = Vec::with_capacity(self.steps.len());
-        for step in &self.steps {
-            match step {
-                Step::Own(stage, OwnPass { pipeline, bindings, groups: (x, y), kernel }) => {
-                    let view = if *kernel == Kernel::Camera { &views.camera } else { &views.samples };
-                    let (bindings, offset) = match bindings {
-                        Some(bindings) => (bindings, None),
-                        None => (view, Some(offset)),
-                    };
-                    let work = Dispatch { pipeline, bindings, offset, groups: Groups::Fixed(*x, *y, 1) };
-                    passes.push(Pass { stage: *stage, work });
-                }
-                Step::Cast(stage, cast) => passes.push(Pass { stage: *stage, work: cast.dispatch() }),
-                Step::Scan(scan) => passes.extend(scan.passes(COMPACTION)),
-            }
-        }
-        passes
-    }
-
-    /// The kernels, each once.
-    pub fn kernels(&self) -> &[KernelInfo] {
-        &self.kernels
-    }
-
-    /// Where the number of photons is.
-    pub fn scan(&self) -> Option<&Scan> {
-        self.steps.iter().find_map(|step| if let Step::Scan(scan) = step { Some(scan) } else { None })
-    }
 }
 
 #[cfg(test)]

@@ -80,7 +80,15 @@ pub struct View {
     pub down: Vec3,
     pub epsilon: f32,
     pub forward: Vec3,
-    pub pad: u32,
+    pub first_border: u32,
+    pub axis_x: Vec3,
+    pub height: u32,
+    pub axis_y: Vec3,
+    pub pad0: u32,
+    pub axis_z: Vec3,
+    pub pad1: u32,
+    pub axes_origin: Vec3,
+    pub margin: f32,
 }
 
 /// `ShadowJob` of `kernels/splat/shadow.wgsl`.

@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::workloads::splat::estimate::BLOCK;
 use crate::workloads::splat::photons::Photons;
 use crate::workloads::splat::samples::Samples;
-use crate::workloads::splat::setting::{Estimate, EstimateKernel, Weight};
+use crate::workloads::splat::setting::{Estimate, EstimateKernel, Form, Weight};
 use glam::DVec3;
 use rayon::ThreadPool;
 use rayon::prelude::*;
@@ -77,7 +77,12 @@ fn share(estimate: &Estimate, receiver: &Receiver, photons: &Photons, index: usi
         EstimateKernel::Epanechnikov => 2.0 * (1.0 - square).abs(),
         EstimateKernel::Constant => 1.0,
     };
-    let share = photons.fluxes[index].truncate().as_dvec3() * (by_direction * by_distance / (PI * radius * radius));
+    let divisor = match (estimate.form, estimate.kernel) {
+        (Form::Normalised, _) => PI * radius * radius,
+        (Form::Source, EstimateKernel::Epanechnikov) => 2.0,
+        (Form::Source, EstimateKernel::Constant) => 1.0,
+    };
+    let share = photons.fluxes[index].truncate().as_dvec3() * (by_direction * by_distance / divisor);
     if square > (1.0 - DOUBT) * (1.0 - DOUBT) || cosine < DOUBT {
         *doubtful += share;
     }

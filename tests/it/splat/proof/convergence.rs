@@ -52,7 +52,12 @@ fn figures(lit: &LitScene, camera: Camera) -> Figures {
             let photons = traced(caster, lit, setting(paths, 4, paths)).slots;
             for (radius, points) in RADII.iter().zip(&mut points) {
                 let radius = lit.diagonal() * radius;
-                let estimate = Estimate { kernel: EstimateKernel::Epanechnikov, weight: Weight::Side, radius };
+                let estimate = Estimate {
+                    kernel: EstimateKernel::Epanechnikov,
+                    weight: Weight::Side,
+                    form: Default::default(),
+                    radius,
+                };
                 let found = Cells::new(pool(), &photons, estimate).irradiance(&samples, &pixels, ON).unwrap();
                 let found: Vec<DVec3> = found.iter().map(|e| e.value).collect();
                 let (error, of_means) = (error(&found, &reference), mean_sum(&found) / reference.mean.element_sum());

@@ -23,7 +23,8 @@ const PARTS: usize = 20;
 
 /// By how many standard errors the mean of an estimate differs from the reference's, and their ratio.
 fn sigmas(photons: &Photons, samples: &Samples, radius: f32, reference: &PathTraced) -> (f64, f64) {
-    let estimate = Estimate { kernel: EstimateKernel::Epanechnikov, weight: Weight::Side, radius };
+    let estimate =
+        Estimate { kernel: EstimateKernel::Epanechnikov, weight: Weight::Side, form: Default::default(), radius };
     let part = |part: usize| {
         let mut own = photons.clone();
         let others = |index: &usize| photons.directions[*index].w as usize % PARTS != part;

@@ -44,7 +44,7 @@ fn cells_and_the_plain_loop_agree() {
     let pixels: Vec<u32> = (0..samples.positions.len() as u32).collect();
     for (kernel, weight) in KINDS {
         for radius in [0.02, 0.2, 1.0, 20.0] {
-            let estimate = Estimate { kernel, weight, radius };
+            let estimate = Estimate { kernel, weight, form: Default::default(), radius };
             let plain = estimate::irradiance(pool(), &samples, &photons, &estimate, ON).unwrap();
             let cells = Cells::new(pool(), &photons, estimate).irradiance(&samples, &pixels, ON).unwrap();
             let exact = exact::irradiance(pool(), &samples, &photons, &estimate, &pixels, ON).unwrap();
@@ -76,7 +76,8 @@ fn cloud() -> (Photons, Samples) {
 fn a_neighbour_left_out_is_found() {
     let (photons, samples) = cloud();
     let pixels: Vec<u32> = (0..500).collect();
-    let estimate = Estimate { kernel: EstimateKernel::Epanechnikov, weight: Weight::Side, radius: 0.15 };
+    let estimate =
+        Estimate { kernel: EstimateKernel::Epanechnikov, weight: Weight::Side, form: Default::default(), radius: 0.15 };
     let plain = estimate::irradiance(pool(), &samples, &photons, &estimate, ON).unwrap();
     let cells = Cells::new(pool(), &photons, estimate);
     assert!(off(&cells.irradiance(&samples, &pixels, ON).unwrap(), &plain) < 1.0e-5);
@@ -96,7 +97,8 @@ fn what_is_ambiguous_is_given() {
         fluxes: vec![Vec4::ONE],
     };
     let samples = Samples { positions: vec![Vec4::W], normals: vec![Vec4::Y], albedos: vec![Vec4::ONE] };
-    let estimate = Estimate { kernel: EstimateKernel::Constant, weight: Weight::Side, radius: 1.0 };
+    let estimate =
+        Estimate { kernel: EstimateKernel::Constant, weight: Weight::Side, form: Default::default(), radius: 1.0 };
     let of = |photons: &Photons| {
         let cells = Cells::new(pool(), photons, estimate).irradiance(&samples, &[0], ON).unwrap();
         let plain = exact::irradiance(pool(), &samples, photons, &estimate, &[0], ON).unwrap();
@@ -116,7 +118,8 @@ fn what_is_ambiguous_is_given() {
 #[test]
 fn nothing_gives_nothing() {
     let (photons, mut samples) = cloud();
-    let estimate = Estimate { kernel: EstimateKernel::Constant, weight: Weight::Side, radius: 0.2 };
+    let estimate =
+        Estimate { kernel: EstimateKernel::Constant, weight: Weight::Side, form: Default::default(), radius: 0.2 };
     // No photons, only empty slots, a pixel without a sample
     let mut empty = photons.clone();
     empty.positions.iter_mut().for_each(|position| position.w = 0.0);

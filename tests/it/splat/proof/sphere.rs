@@ -182,7 +182,7 @@ fn expected() -> f64 {
 
 #[test]
 fn irradiance_in_the_sphere() {
-    let estimate = |kernel, weight, radius| Estimate { kernel, weight, radius };
+    let estimate = |kernel, weight, radius| Estimate { kernel, weight, form: Default::default(), radius };
     let samples = samples(&lit(), SAMPLES);
     let pixels: Vec<u32> = (0..SAMPLES).collect();
     let photons = TRACED.slots.compacted();

@@ -1,0 +1,1 @@
+//! Passes that bring photons to clusters and samples.
