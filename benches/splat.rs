@@ -8,9 +8,11 @@ use rtbench::device::{CpuDevice, VulkanDevice};
 use rtbench::scene;
 use rtbench::workloads::size::Size;
 use rtbench::workloads::splat::CpuFrame;
-use rtbench::workloads::splat::gpu::GpuFrame;
+use rtbench::workloads::splat::clusters::setting::ClusterSetting;
+use rtbench::workloads::splat::gpu::{GpuFrame, stages};
 use rtbench::workloads::splat::lit::{LitScene, PointLight};
 use rtbench::workloads::splat::setting::{Energy, Estimate, EstimateKernel, Falloff, Setting, Weight};
+use rtbench::workloads::splat::splatting::setting::Gather;
 use rtbench::workloads::trace::Selection;
 use rtbench::workloads::trace::backend::Backend;
 use std::sync::Arc;
@@ -23,7 +25,7 @@ fn nanoseconds(frame: &mut GpuFrame, camera: &Camera, stage: impl Fn(&str) -> bo
     if time.stages.is_empty() {
         return time.wall_ns;
     }
-    let labels = rtbench::workloads::splat::gpu::stages(setting);
+    let labels = stages(setting, Gather::Reference, &ClusterSetting::default());
     labels.iter().zip(&time.stages).filter(|(label, _)| stage(label)).map(|(_, ns)| ns).sum()
 }
 
@@ -82,7 +84,7 @@ fn frames(criterion: &mut Criterion) {
         let stages = twin.render(&camera, &|| false).expect("a frame");
         group.throughput(Throughput::Elements((stages.photons.len() * size.pixels()) as u64));
         group.bench_function(BenchmarkId::new("twin", stages.photons.len()), |bencher| {
-            bencher.iter(|| twin.irradiance(&stages.samples, &stages.photons, &|| false).expect("an estimate"));
+            bencher.iter(|| twin.gather(&camera, &stages.samples, &stages.photons, &|| false).expect("an estimate"));
         });
         if let Some(gpu) = &gpu {
             let mut frame =

@@ -74,16 +74,26 @@ pub struct Input {
 
 impl fmt::Display for Input {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.place)?;
+        write!(f, "{}", visible(&self.place))?;
         if let Some(line) = self.line {
             write!(f, ":{line}")?;
         }
-        write!(f, ": {}", self.problem)?;
+        // What a user typed may have any character in it
+        write!(f, ": {}", visible(&self.problem))?;
         if !self.hint.is_empty() {
             write!(f, " ({})", self.hint)?;
         }
         Ok(())
     }
+}
+
+/// A text in which characters that control a terminal, line breaks among them, are escaped as in Rust.
+fn visible(text: &str) -> String {
+    let mut visible = String::with_capacity(text.len());
+    for c in text.chars() {
+        if c.is_control() { visible.extend(c.escape_default()) } else { visible.push(c) }
+    }
+    visible
 }
 
 impl Error {

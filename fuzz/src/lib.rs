@@ -7,13 +7,14 @@
 
 use rtbench::Result;
 use rtbench::camera::CameraPath;
+use rtbench::harness::workload::Part;
 use rtbench::scene::{self, FORMATS, Scene};
 use rtbench::workloads::size::Size;
 use rtbench::workloads::spheres;
 use rtbench::workloads::splat::radius::Radius;
 use rtbench::workloads::splat::reference::cache;
 use rtbench::workloads::splat::technique::Technique;
-use rtbench::workloads::splat;
+use rtbench::workloads::splat::{self, SplatCase};
 use rtbench::workloads::trace::Selection;
 use std::path::PathBuf;
 use std::sync::LazyLock;
@@ -106,6 +107,16 @@ pub fn splat(bytes: &[u8]) {
     }
     if let Some(technique) = one_line(Technique::parse(text)) {
         assert_eq!(Technique::parse(&technique.to_string()).expect("what was written is read"), technique);
+    }
+    for axis in splat::cluster_axes::AXES {
+        let mut part = Part::default();
+        for (axis, value) in [("technique", "per-sample"), ("resolution", "64x36"), (axis, text)] {
+            part.values.insert(axis.to_owned(), vec![value.to_owned()]);
+        }
+        for case in one_line(SplatCase::all(&part)).unwrap_or_default() {
+            let again = SplatCase::parse(&case.to_case("box")).expect("what was written is read");
+            assert_eq!(again, case);
+        }
     }
 }
 

@@ -10,6 +10,7 @@ pub mod rows;
 pub mod rt2;
 pub mod runs;
 pub mod spheres;
+pub mod splat;
 pub mod thesis;
 
 use crate::error::{Error, Result};
@@ -20,7 +21,7 @@ use claims::Finding;
 use convention::Convention;
 
 /// All sources.
-pub const ALL: [&Source; 3] = [&thesis::SOURCE, &rt2::SOURCE, &spheres::SOURCE];
+pub const ALL: [&Source; 4] = [&thesis::SOURCE, &rt2::SOURCE, &spheres::SOURCE, &splat::SOURCE];
 
 /// A source.
 pub struct Source {

@@ -18,10 +18,15 @@ impl Size {
         self.width as usize * self.height as usize
     }
 
+    /// Pixels of the longer side.
+    pub fn longer_side(self) -> u32 {
+        self.width.max(self.height)
+    }
+
     /// A size of the same shape whose longer side has so many pixels.
     #[must_use]
     pub fn with_longer_side(self, pixels: u32) -> Size {
-        let longer = u64::from(self.width.max(self.height).max(1));
+        let longer = u64::from(self.longer_side().max(1));
         let side = |length: u32| ((u64::from(length) * u64::from(pixels) / longer) as u32).max(1);
         Size { width: side(self.width), height: side(self.height) }
     }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 const WIDTH: usize = 120;
 
 /// Files and folders that are checked.
-const CHECKED: [&str; 23] = [
+const CHECKED: [&str; 24] = [
     "ARCHITECTURE.md",
     "CHANGELOG.md",
     "CONTRIBUTING.md",
@@ -27,6 +27,7 @@ const CHECKED: [&str; 23] = [
     "results/README.md",
     "results/rt2-2010",
     "results/spheres-paper",
+    "results/splat-thesis",
     "results/thesis-2009",
     "scenes/README.md",
     "scenes/catalog.toml",

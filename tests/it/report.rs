@@ -1,5 +1,6 @@
 //! Tables in every format for a source of any name, and documents with parts that a command writes.
 
+use rtbench::report::figure::{Axis, Band, Figure, Panel, Picture};
 use rtbench::report::format::{self, Format};
 use rtbench::report::splice::{Need, splice};
 use rtbench::report::{Cell, Column, Form, Number, Origin, Row, Table, html, wrap};
@@ -102,4 +103,50 @@ fn markers_come_in_pairs() {
     let once = splice(path, text, &block, Need::All).unwrap();
     assert_eq!(once, text.replace("x-->\r\n", "x-->\r\n\r\nnew\r\n\r\n"));
     assert_eq!(splice(path, &once, &block, Need::All).unwrap(), once);
+}
+
+/// Corners of the polygons of an SVG document, in their order.
+fn polygons(svg: &str) -> Vec<Vec<(i32, i32)>> {
+    let document = roxmltree::Document::parse(svg).unwrap();
+    let corner = |text: &str| {
+        let (x, y) = text.split_once(',').unwrap();
+        (x.parse().unwrap(), y.parse().unwrap())
+    };
+    let points = document
+        .descendants()
+        .filter_map(|node| node.attribute("points").filter(|_| node.tag_name().name() == "polygon"));
+    points.map(|points| points.split_whitespace().map(corner).collect()).collect()
+}
+
+#[test]
+fn bands_are_stacked_without_gap_and_as_high_as_their_values() {
+    let band = |style: usize, heights: [f64; 3]| Band {
+        label: format!("band {style}"),
+        style,
+        points: [1.0, 2.0, 3.0].into_iter().zip(heights).collect(),
+    };
+    let panel = Panel {
+        title: String::new(),
+        x: Axis { label: "frame".into(), log: false, range: (1.0, 3.0), ticks: vec![1.0, 2.0, 3.0] },
+        y: Axis { label: "time".into(), log: false, range: (0.0, 10.0), ticks: vec![0.0, 5.0, 10.0] },
+        series: Vec::new(),
+        groups: Vec::new(),
+        bars: Vec::new(),
+        bands: vec![band(0, [2.0, 4.0, 2.0]), band(1, [3.0, 1.0, 6.0])],
+    };
+    let picture = Picture { title: "Bands".into(), panels: vec![panel], columns: 1 };
+    let figure = Figure::draw("bands", "bands".into(), String::new(), &picture).unwrap();
+    assert!(figure.svg.contains("band 0") && figure.svg.contains("band 1"));
+    let found = polygons(&figure.svg);
+    assert_eq!(found.len(), 2, "{found:?}");
+    // Upper edge from the left, then the lower one from the right
+    let (upper, lower) = (&found[0][..3], &found[1][3..]);
+    assert_eq!(upper, lower.iter().rev().copied().collect::<Vec<_>>());
+    let height = |band: usize, frame: usize| f64::from(found[band][5 - frame].1 - found[band][frame].1);
+    let unit = height(0, 0) / 2.0;
+    for (band, heights) in [[2.0, 4.0, 2.0], [3.0, 1.0, 6.0]].iter().enumerate() {
+        for (frame, expected) in heights.iter().enumerate() {
+            assert!((height(band, frame) / unit - expected).abs() < 0.1, "{band} {frame}: {found:?}");
+        }
+    }
 }

@@ -75,6 +75,7 @@ pub fn figure(comparison: &Comparison) -> Result<Option<Figure>> {
         ],
         groups: Vec::new(),
         bars: Vec::new(),
+        bands: Vec::new(),
     }];
     // As many as can be labelled
     let means: Vec<_> = comparison.means.iter().take(8).collect();
@@ -103,6 +104,7 @@ pub fn figure(comparison: &Comparison) -> Result<Option<Figure>> {
             series: Vec::new(),
             groups: means.iter().map(name).collect(),
             bars: bars.collect(),
+            bands: Vec::new(),
         });
     }
     let picture = Picture { title: "Ratios of frame times".into(), panels, columns: 1 };

@@ -16,7 +16,15 @@ pub struct Buffer {
 /// An empty buffer cannot be bound, and a binding must hold one element: every buffer has at least this many bytes.
 const SMALLEST: u64 = 96;
 
+/// Bytes of [`POISON`] that are copied at a time.
+const POISON_BYTES: u64 = 1 << 20;
+
 impl Buffer {
+    /// True for the same memory.
+    pub fn is(&self, other: &Buffer) -> bool {
+        self.buffer == other.buffer
+    }
+
     /// The bytes that were asked for.
     pub fn bytes(&self) -> u64 {
         self.bytes
@@ -58,8 +66,25 @@ impl VulkanDevice {
 
     /// Fills a buffer that [`VulkanDevice::poisoned`] made with [`POISON`] again.
     pub fn poison(&self, buffer: &Buffer) {
-        let poison = vec![POISON; (buffer.bytes as usize).div_ceil(4)];
-        self.queue.write_buffer(&buffer.buffer, 0, bytemuck::cast_slice(&poison));
+        // A write as large as the buffer would take its memory twice more
+        let source = self.poison.get_or_init(|| {
+            let usage = wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+            let descriptor = wgpu::BufferDescriptor {
+                label: Some("the poison"),
+                size: POISON_BYTES,
+                usage,
+                mapped_at_creation: false,
+            };
+            let source = self.device.create_buffer(&descriptor);
+            self.queue.write_buffer(&source, 0, bytemuck::cast_slice(&vec![POISON; POISON_BYTES as usize / 4]));
+            source
+        });
+        let size = buffer.bytes.next_multiple_of(4);
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        for at in (0..size).step_by(POISON_BYTES as usize) {
+            encoder.copy_buffer_to_buffer(source, 0, &buffer.buffer, at, (size - at).min(POISON_BYTES));
+        }
+        self.queue.submit([encoder.finish()]);
     }
 
     /// A buffer that one pass writes and a later one reads, zero at first. It may hold the numbers of groups of

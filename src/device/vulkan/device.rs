@@ -5,7 +5,7 @@ use super::binding::Pipeline;
 use crate::device::{DeviceInfo, Feature, Features, lock};
 use crate::error::{Error, Refusal, Result, one_line};
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 use std::time::Duration;
 
 /// How kernels are compiled and dispatched.
@@ -39,6 +39,8 @@ pub struct VulkanDevice {
     pub(super) queue: wgpu::Queue,
     pub(super) limits: wgpu::Limits,
     pub(super) pipelines: Mutex<HashMap<blake3::Hash, Arc<Pipeline>>>,
+    /// What results are filled with before they are there.
+    pub(super) poison: OnceLock<wgpu::Buffer>,
     options: VulkanOptions,
     features: Features,
     info: DeviceInfo,
@@ -89,7 +91,17 @@ impl VulkanDevice {
         if features.has(Feature::Timestamps) {
             info.timestamp_period_ns = Some(queue.get_timestamp_period());
         }
-        Ok(VulkanDevice { device, queue, limits, pipelines: Default::default(), options, features, info, errors })
+        Ok(VulkanDevice {
+            device,
+            queue,
+            limits,
+            pipelines: Default::default(),
+            poison: Default::default(),
+            options,
+            features,
+            info,
+            errors,
+        })
     }
 
     /// The description for a run's provenance.
@@ -105,6 +117,11 @@ impl VulkanDevice {
     /// The options it was opened with.
     pub fn options(&self) -> VulkanOptions {
         self.options
+    }
+
+    /// Bytes of memory that a work-group can have.
+    pub fn max_workgroup_memory(&self) -> u64 {
+        self.limits.max_compute_workgroup_storage_size.into()
     }
 
     /// Most work-groups of a dispatch in each dimension.
@@ -175,7 +192,7 @@ mod tests {
     fn features_are_requested_only_if_they_are_wanted() {
         // Without a driver there is nothing to test; tests/it/device.rs says so where one is required
         let Some(usual) = adapters().pop() else { return };
-        let wanted = Features::of(&[Feature::Subgroups, Feature::FloatAtomics]);
+        let wanted = Features::of(&[Feature::Subgroups]);
         let usual = VulkanDevice::open(&usual, VulkanOptions::default()).unwrap();
         assert!(usual.features().missing_in(WANTED).is_empty());
         assert_eq!(usual.device.features() & wgpu_features(wanted), wgpu::Features::empty());

@@ -1,11 +1,11 @@
 //! Compiled kernels and what is bound to them.
 
-use super::binding::{Binding, Pipeline};
+use super::binding::{Binding, BindingKind, Pipeline};
 use super::buffers::Buffer;
 use super::device::VulkanDevice;
 use super::read_buffer::ReadBuffer;
 use crate::device::lock;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use std::sync::Arc;
 
 /// What a kernel is compiled from.
@@ -54,9 +54,15 @@ impl VulkanDevice {
     /// The compiled form of a kernel; it is compiled the first time only.
     ///
     /// # Errors
-    /// [`crate::Error::Device`] with the driver's message.
+    /// [`Error::Device`] with the driver's message, [`Error::Refused`] for more storage buffers than the device has.
     pub fn pipeline(&self, description: &PipelineDescription) -> Result<Arc<Pipeline>> {
         let &PipelineDescription { label, text, layout, checked, zero_workgroup_memory } = description;
+        let is_storage = |binding: &&Binding| matches!(binding.kind, BindingKind::Read | BindingKind::ReadWrite);
+        let (need, limit) =
+            (layout.iter().filter(is_storage).count(), self.limits.max_storage_buffers_per_shader_stage);
+        if need > limit as usize {
+            return Err(Error::unsupported(format!("a kernel with {need} storage buffers, this device has {limit}")));
+        }
         let checked = checked || self.options().checked;
         let identity = blake3::hash(format!("{checked} {zero_workgroup_memory} {layout:?}\n{text}").as_bytes());
         if let Some(done) = lock(&self.pipelines).get(&identity) {

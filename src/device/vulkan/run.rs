@@ -76,17 +76,88 @@ impl<'d> InFlight<'d> {
     }
 }
 
+/// Work-groups of indirect dispatches that a frame has read back.
+#[derive(Default)]
+struct ReadBack<'a>(Vec<(&'a Buffer, u64, [u32; 3])>);
+
+impl<'a> ReadBack<'a> {
+    /// The passes with what was read instead of what is to be read by the device.
+    fn resolve(&mut self, device: &VulkanDevice, passes: &[Pass<Dispatch<'a>>]) -> Result<Vec<Pass<Dispatch<'a>>>> {
+        let mut resolved = passes.to_vec();
+        for Pass { work, .. } in &mut resolved {
+            let Groups::Indirect { buffer, offset } = work.groups else { continue };
+            let found = self.0.iter().find(|(known, at, _)| known.is(buffer) && *at == offset).map(|known| known.2);
+            let [x, y, z] = match found {
+                Some(groups) => groups,
+                None => {
+                    let first = offset as usize / 4;
+                    let words: Vec<u32> = device.read(buffer, first + 3)?;
+                    let groups = [words[first], words[first + 1], words[first + 2]];
+                    self.0.push((buffer, offset, groups));
+                    groups
+                }
+            };
+            work.groups = Groups::Fixed(x, y, z);
+        }
+        Ok(resolved)
+    }
+}
+
+/// The numbers of passes of a frame's submissions. One that reads back ends before each pass whose work-groups no pass
+/// before it had.
+fn submission_lengths(frame: &Frame<Dispatch>, reads_back: bool) -> Vec<usize> {
+    let mut lengths = Vec::new();
+    let mut seen: Vec<(&Buffer, u64)> = Vec::new();
+    for pass in &frame.passes {
+        let is_new = match pass.work.groups {
+            Groups::Indirect { buffer, offset } if reads_back => {
+                let is_new = !seen.iter().any(|(known, at)| known.is(buffer) && *at == offset);
+                seen.push((buffer, offset));
+                is_new
+            }
+            _ => false,
+        };
+        match lengths.last_mut() {
+            Some(length) if !is_new && frame.submissions == Submissions::PerFrame => *length += 1,
+            _ => lengths.push(1),
+        }
+    }
+    lengths
+}
+
 impl VulkanDevice {
     /// Runs frames one after another and times each. Uploads are waited for before the first.
     ///
     /// # Errors
     /// [`Error::Interrupted`] between submissions, or the device's.
     pub fn run_frames(&self, frames: &[Frame<Dispatch>], interrupted: Interrupted) -> Result<Vec<FrameTime>> {
+        self.run_all(frames, false, interrupted)
+    }
+
+    /// Runs frames as [`VulkanDevice::run_frames`] does, but reads the work-groups of indirect dispatches back in the
+    /// middle of a frame, each number once, and dispatches by what it read.
+    ///
+    /// # Errors
+    /// As [`VulkanDevice::run_frames`].
+    pub fn run_frames_by_read_back(
+        &self,
+        frames: &[Frame<Dispatch>],
+        interrupted: Interrupted,
+    ) -> Result<Vec<FrameTime>> {
+        self.run_all(frames, true, interrupted)
+    }
+
+    fn run_all(
+        &self,
+        frames: &[Frame<Dispatch>],
+        reads_back: bool,
+        interrupted: Interrupted,
+    ) -> Result<Vec<FrameTime>> {
         let mut times = Vec::with_capacity(frames.len());
         let mut rest = frames;
         while !rest.is_empty() {
             let (chunk, after) = rest.split_at(self.frames_per_query_set(rest)?);
-            self.run_chunk(chunk, interrupted, &mut times)?;
+            self.run_chunk(chunk, reads_back, interrupted, &mut times)?;
             rest = after;
         }
         Ok(times)
@@ -144,6 +215,7 @@ impl VulkanDevice {
     fn run_chunk(
         &self,
         frames: &[Frame<Dispatch>],
+        reads_back: bool,
         interrupted: Interrupted,
         times: &mut Vec<FrameTime>,
     ) -> Result<()> {
@@ -161,17 +233,19 @@ impl VulkanDevice {
         let mut first_timestamp = 0;
         for frame in frames {
             let timers = frame.timers();
-            let per_submission = match frame.submissions {
-                Submissions::PerPass => 1,
-                Submissions::PerFrame => frame.passes.len(),
-            };
-            for (index, passes) in frame.passes.chunks(per_submission).enumerate() {
+            let mut known = ReadBack::default();
+            let mut first_pass = 0;
+            for length in submission_lengths(frame, reads_back) {
                 if interrupted() {
                     in_flight.drain(0)?;
                     return Err(Error::Interrupted);
                 }
-                let first_pass = index * per_submission;
-                let submission = self.submit(passes, |pass| {
+                let passes = &frame.passes[first_pass..first_pass + length];
+                let read = match reads_back {
+                    true => known.resolve(self, passes).inspect_err(|_| _ = in_flight.drain(0))?,
+                    false => passes.to_vec(),
+                };
+                let submission = self.submit(&read, |pass| {
                     let PassTimer { begin, end } = timers[first_pass + pass];
                     let query_set = queries.as_ref().filter(|_| begin.is_some() || end.is_some())?;
                     Some(wgpu::ComputePassTimestampWrites {
@@ -180,8 +254,8 @@ impl VulkanDevice {
                         end_of_pass_write_index: end.map(|index| first_timestamp + index),
                     })
                 });
-                let ends_frame = first_pass + passes.len() == frame.passes.len();
-                in_flight.waiting.push_back((submission, ends_frame));
+                first_pass += length;
+                in_flight.waiting.push_back((submission, first_pass == frame.passes.len()));
                 in_flight.drain(IN_FLIGHT - 1)?;
             }
             first_timestamp += frame.timestamps() as u32;

@@ -23,7 +23,7 @@ pub struct Picture {
     pub columns: usize,
 }
 
-/// A coordinate system with lines or bars.
+/// A coordinate system with lines, bars or stacked bands.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
     /// The title above the panel; may be empty.
@@ -38,6 +38,8 @@ pub struct Panel {
     pub groups: Vec<String>,
     /// The bars.
     pub bars: Vec<Bar>,
+    /// Bands that are stacked from zero, the lowest first.
+    pub bands: Vec<Band>,
 }
 
 /// A line with markers.
@@ -53,6 +55,17 @@ pub struct Series {
     pub points: Vec<(f64, f64)>,
     /// A value to draw a ring around.
     pub ringed: Option<(f64, f64)>,
+}
+
+/// An area of a stack: it begins where the ones before it end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Band {
+    /// The label in the legend.
+    pub label: String,
+    /// The index of the colour.
+    pub style: usize,
+    /// Position and height, from the left; the positions are those of all bands of the panel.
+    pub points: Vec<(f64, f64)>,
 }
 
 /// A bar with whiskers.
@@ -157,7 +170,9 @@ fn legend_rows(picture: &Picture) -> Vec<Vec<Entry>> {
     let mut entries: Vec<Entry> = Vec::new();
     for panel in &picture.panels {
         let lines = panel.series.iter().map(|s| (s.label.clone(), s.style, s.faint, false));
-        for entry in lines.chain(panel.bars.iter().map(|b| (b.label.clone(), b.style, false, true))) {
+        let bars = panel.bars.iter().map(|b| (b.label.clone(), b.style, false, true));
+        let bands = panel.bands.iter().map(|b| (b.label.clone(), b.style, false, true));
+        for entry in lines.chain(bars).chain(bands) {
             if !entries.contains(&entry) {
                 entries.push(entry);
             }
@@ -248,11 +263,29 @@ fn draw_panel(area: &Area, panel: &Panel) -> Outcome {
         .x_desc(panel.x.label.clone())
         .y_desc(panel.y.label.clone())
         .draw()?;
+    draw_bands(&mut chart, panel)?;
     for bar in &panel.bars {
         draw_bar(&mut chart, panel, bar)?;
     }
     for series in &panel.series {
         draw_series(&mut chart, panel, series)?;
+    }
+    Ok(())
+}
+
+/// Draws the bands on top of each other.
+fn draw_bands(chart: &mut Chart, panel: &Panel) -> Outcome {
+    let place = |(x, y): (f64, f64)| (panel.x.position(x), panel.y.position(y).min(panel.y.range.1));
+    let mut below: Vec<f64> = Vec::new();
+    for band in &panel.bands {
+        below.resize(band.points.len(), 0.0);
+        let above: Vec<f64> = band.points.iter().zip(&below).map(|((_, height), below)| below + height).collect();
+        let edge = |heights: &[f64]| -> Vec<(f64, f64)> {
+            band.points.iter().zip(heights).map(|((x, _), height)| place((*x, *height))).collect()
+        };
+        let outline: Vec<(f64, f64)> = edge(&above).into_iter().chain(edge(&below).into_iter().rev()).collect();
+        chart.draw_series([Polygon::new(outline, theme::series(band.style).filled())])?;
+        below = above;
     }
     Ok(())
 }

@@ -1,11 +1,11 @@
-//! Figures as SVG: panels with lines or bars, a legend, colours for paper and for a dark page.
+//! Figures as SVG: panels with lines, bars or stacked bands, a legend, colours for paper and for a dark page.
 
 mod axis;
 mod draw;
 mod theme;
 
 pub use axis::{Axis, spreads};
-pub use draw::{Bar, Panel, Picture, Series};
+pub use draw::{Band, Bar, Panel, Picture, Series};
 pub use theme::STYLES;
 
 use crate::error::{Error, Result};

@@ -1,5 +1,6 @@
 //! A case of photon splatting, typed; the harness knows it as axes.
 
+use super::cluster_axes::{self, Clustering};
 use super::lights::LightChoice;
 use super::radius::Radius;
 use super::setting::{Energy, Falloff, MAX_HITS, Setting};
@@ -22,6 +23,8 @@ pub struct SplatCase {
     pub setting: Setting,
     /// The radius of photons.
     pub radius: Radius,
+    /// The clusters of techniques that have any. `tiled` has tiles only.
+    pub clustering: Option<Clustering>,
     /// Lights as given, see [`light_choices`]; empty for the scene's.
     pub light: String,
     /// Name or file of the camera path; empty for the scene's own.
@@ -36,8 +39,8 @@ const FALLOFFS: [(&str, Falloff); 2] = [("square", Falloff::Square), ("source", 
 const ENERGIES: [(&str, Energy); 2] = [("flux", Energy::Flux), ("shared", Energy::Shared)];
 
 /// Values of axes for which neither the preset nor the user gives one.
-const DEFAULTS: [(&str, &str); 8] = [
-    ("technique", "reference"),
+const DEFAULTS: [(&str, &str); 17] = [
+    ("technique", "per-sample"),
     ("structure", "bvh-stack"),
     ("paths", "5667"),
     ("hits", "4"),
@@ -45,7 +48,20 @@ const DEFAULTS: [(&str, &str); 8] = [
     ("radius", "0.03"),
     ("falloff", "square"),
     ("energy", "flux"),
+    ("tile", "32"),
+    ("key", "morton"),
+    ("normals", "off"),
+    ("unique", "flags"),
+    ("bounds", "direct"),
+    ("hierarchy", "masks"),
+    ("space", "view"),
+    ("capacity", "33554432"),
+    ("sync", "device"),
 ];
+
+/// Of all pairs of a sample and a photon, techniques with clusters are taken to test one in this many: at the radius
+/// that the source's load follows from it is one in 15 to 30, at usable ones one in a hundred and more.
+const CLUSTERED: u64 = 100;
 
 /// The value of the axis `frames` for all frames of a path, until the path is read.
 const ALL_FRAMES: &str = "all";
@@ -53,7 +69,11 @@ const ALL_FRAMES: &str = "all";
 /// The value of the axes `light` and `camera_path` where the scene's own are taken.
 const OF_SCENE: &str = "";
 
-fn number(axis: &str, text: &str, range: std::ops::RangeInclusive<u32>) -> Result<u32> {
+/// A whole number in a range.
+///
+/// # Errors
+/// [`Error::Input`] for any other text.
+pub(super) fn number(axis: &str, text: &str, range: std::ops::RangeInclusive<u32>) -> Result<u32> {
     let number = text.parse().ok().filter(|number| range.contains(number));
     number.ok_or_else(|| {
         let hint = format!("give {} to {}", range.start(), range.end());
@@ -75,7 +95,7 @@ fn seed(text: &str) -> Result<u32> {
 }
 
 /// The values of an axis, or its default.
-fn values<T: PartialEq>(part: &Part, axis: &str, parse: impl Fn(&str) -> Result<T>) -> Result<Vec<T>> {
+pub(super) fn values<T: PartialEq>(part: &Part, axis: &str, parse: impl Fn(&str) -> Result<T>) -> Result<Vec<T>> {
     match part.of(axis) {
         [] => {
             let default = DEFAULTS.iter().find(|(name, _)| *name == axis).map_or("", |(_, value)| value);
@@ -107,16 +127,33 @@ impl SplatCase {
         let radii = values(part, "radius", Radius::parse)?;
         let techniques = values(part, "technique", Technique::parse_all)?.concat();
         let selections = values(part, "structure", Selection::parse_all)?.concat();
+        cluster_axes::check_given(part, &techniques)?;
+        let mut ways: Vec<(Technique, Option<Clustering>)> = Vec::new();
+        for &technique in &techniques {
+            match technique.gather.has_tiles() {
+                true => ways.extend(Clustering::all(part, technique)?.into_iter().map(|c| (technique, Some(c)))),
+                false => ways.push((technique, None)),
+            }
+        }
         let mut cases = Vec::new();
         for (light, camera_path) in lights.iter().flat_map(|light| camera_paths.iter().map(move |path| (light, path))) {
             for (&size, &setting) in sizes.iter().flat_map(|size| settings.iter().map(move |setting| (size, setting))) {
                 for (&radius, selection) in radii.iter().flat_map(|radius| selections.iter().map(move |s| (radius, s)))
                 {
-                    for &technique in &techniques {
+                    for &(technique, clustering) in &ways {
                         let (selection, light) = (selection.clone(), light.clone());
                         let (camera_path, frames) = (camera_path.clone(), part.frames);
-                        let case =
-                            SplatCase { technique, selection, setting, radius, light, camera_path, size, frames };
+                        let case = SplatCase {
+                            technique,
+                            selection,
+                            setting,
+                            radius,
+                            clustering,
+                            light,
+                            camera_path,
+                            size,
+                            frames,
+                        };
                         if !cases.contains(&case) {
                             cases.push(case);
                         }
@@ -129,7 +166,7 @@ impl SplatCase {
 
     /// For the harness.
     pub fn to_case(&self, scene: &str) -> Case {
-        let SplatCase { technique, selection, setting, radius, light, camera_path, size, frames } = self;
+        let SplatCase { technique, selection, setting, radius, clustering, light, camera_path, size, frames } = self;
         let resolution = format!("{}x{}", size.width, size.height);
         let frames_text = frames.map_or(ALL_FRAMES.to_owned(), |frames| frames.to_string());
         let axes = [
@@ -147,8 +184,10 @@ impl SplatCase {
             ("resolution", resolution.clone()),
             ("frames", frames_text.clone()),
         ];
-        let options = selection.option_axes().into_iter().chain(technique.axes());
-        let axes = axes.into_iter().chain(options).map(|(axis, value)| (axis.to_owned(), value));
+        let of_technique = technique.axes().into_iter().filter(|(axis, value)| is_kept(axis, value));
+        let options = selection.option_axes().into_iter().chain(of_technique);
+        let clustering = clustering.iter().flat_map(Clustering::axes);
+        let axes = axes.into_iter().chain(options).chain(clustering).map(|(axis, value)| (axis.to_owned(), value));
         Case {
             axes: axes.collect(),
             input: scene.to_owned(),
@@ -159,9 +198,11 @@ impl SplatCase {
         }
     }
 
-    /// Distances between samples and photons that a frame computes at most.
+    /// Distances between samples and photons that a frame computes at most; of techniques with clusters, which find the
+    /// photons near a sample, a hundredth of all.
     pub fn tests(&self) -> u64 {
-        self.setting.slots().saturating_mul(self.size.pixels() as u64)
+        let all = self.setting.slots().saturating_mul(self.size.pixels() as u64);
+        if self.technique.gather.has_clusters() { all / CLUSTERED } else { all }
     }
 
     /// Reads what [`SplatCase::to_case`] wrote.
@@ -184,12 +225,18 @@ impl SplatCase {
                 energy: word("energy", &ENERGIES, case.axis("energy"))?,
             },
             radius: Radius::parse(case.axis("radius"))?,
+            clustering: Clustering::of_axes(|axis| case.axis(axis))?,
             light: case.axis("light").to_owned(),
             camera_path: case.axis("camera_path").to_owned(),
             size: parse_size(case.axis("resolution"))?,
             frames,
         })
     }
+}
+
+/// An option without effect is no axis of a case, but for those that rows have always had.
+fn is_kept(axis: &str, value: &str) -> bool {
+    !value.is_empty() || ["kernel", "weight"].contains(&axis)
 }
 
 /// Every combination of what decides the photons.

@@ -3,6 +3,7 @@
 use super::Stages;
 use super::lit::LitScene;
 use super::setting::Setting;
+use super::splatting::setting::Gather;
 use super::verify::mean;
 use crate::record::row::Metric;
 use crate::record::statistics::round;
@@ -10,7 +11,7 @@ use glam::DVec3;
 
 /// Paths that arrive at each hit and that are lost before it, photons, samples, distance tests, stored flux as a share
 /// of what the lights emit, and the means of irradiance and direct light over all pixels.
-pub fn metrics(stages: &Stages, lit: &LitScene, setting: Setting) -> Vec<Metric> {
+pub fn metrics(stages: &Stages, lit: &LitScene, setting: Setting, gather: Gather) -> Vec<Metric> {
     let mut metrics = Vec::new();
     let mut before = setting.paths;
     for (hit, &arrived) in (1..).zip(&stages.traced.arrived) {
@@ -27,7 +28,9 @@ pub fn metrics(stages: &Stages, lit: &LitScene, setting: Setting) -> Vec<Metric>
     let stored = sum(&mut stages.photons.fluxes.iter().map(|flux| flux.truncate().as_dvec3()));
     metrics.push(Metric::new("photons", photons));
     metrics.push(Metric::new("samples", samples));
-    metrics.push(Metric::new("distance_tests", photons * samples));
+    if gather == Gather::Reference {
+        metrics.push(Metric::new("distance_tests", photons * samples));
+    }
     if emitted > 0.0 {
         metrics.push(Metric::new("stored_flux_share", round(stored / emitted, 6)));
     }

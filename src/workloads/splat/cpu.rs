@@ -1,10 +1,13 @@
 //! A frame by the twins.
 
+use super::clusters::Clusters;
+use super::gathered::{self, Gathered, Scenery};
+use super::gathering::Gathering;
 use super::lit::{LightShare, LitScene};
 use super::photons::{Photons, Traced, check_slots};
 use super::samples::{Samples, Seen};
-use super::setting::{Estimate, Setting};
-use super::{bounce, camera, direct, emit, estimate, mix, samples};
+use super::setting::Setting;
+use super::{bounce, camera, direct, emit, mix, samples};
 use crate::camera::Camera;
 use crate::device::{CpuDevice, Interrupted};
 use crate::error::{Error, Result};
@@ -24,6 +27,8 @@ pub struct Stages {
     pub samples: Samples,
     /// Radiance of each pixel by direct light; `w` is 0.
     pub direct: Vec<Vec4>,
+    /// What lies between samples and irradiance.
+    pub gathered: Gathered,
     /// Irradiance of each sample by indirect light; `w` is 0.
     pub irradiance: Vec<Vec4>,
     /// Radiance of each pixel; `w` is 0.
@@ -36,7 +41,7 @@ pub struct CpuFrame<'a> {
     caster: Box<dyn Prepared + 'a>,
     lit: &'a LitScene,
     setting: Setting,
-    estimate: Estimate,
+    gathering: Gathering,
     size: Size,
 }
 
@@ -47,10 +52,10 @@ impl<'a> CpuFrame<'a> {
         caster: Box<dyn Prepared + 'a>,
         lit: &'a LitScene,
         setting: Setting,
-        estimate: Estimate,
+        gathering: impl Into<Gathering>,
         size: Size,
     ) -> CpuFrame<'a> {
-        CpuFrame { device, caster, lit, setting, estimate, size }
+        CpuFrame { device, caster, lit, setting, gathering: gathering.into(), size }
     }
 
     /// The image has this size.
@@ -92,12 +97,38 @@ impl<'a> CpuFrame<'a> {
         direct::light(pool, caster, self.lit, &self.setting, (&seen, samples), interrupted)
     }
 
-    /// Irradiance of samples by indirect light; `w` is 0.
+    /// What lies between the samples of a view and their irradiance by indirect light, and that irradiance; `w` is 0.
     ///
     /// # Errors
-    /// [`Error::Interrupted`] between bands of samples.
-    pub fn irradiance(&self, samples: &Samples, photons: &Photons, interrupted: Interrupted) -> Result<Vec<Vec4>> {
-        estimate::irradiance(self.device.pool(), samples, photons, &self.estimate, interrupted)
+    /// Those of [`gathered::gather`].
+    pub fn gather(
+        &self,
+        camera: &Camera,
+        samples: &Samples,
+        photons: &Photons,
+        interrupted: Interrupted,
+    ) -> Result<(Gathered, Vec<Vec4>)> {
+        let view = self.scenery(camera, samples, photons);
+        gathered::gather(self.device.pool(), &self.gathering, &view, interrupted)
+    }
+
+    /// The clusters of a view.
+    ///
+    /// # Errors
+    /// [`Error::Device`] for a frame without clusters, and those of [`CpuFrame::samples`].
+    pub fn clusters(&mut self, camera: &Camera, interrupted: Interrupted) -> Result<Clusters> {
+        let (samples, photons) = (self.samples(camera, interrupted)?, Photons::default());
+        gathered::clustered(self.device.pool(), &self.gathering, &self.scenery(camera, &samples, &photons))
+    }
+
+    /// A view of the scene.
+    pub fn scenery<'s>(&'s self, camera: &'s Camera, samples: &'s Samples, photons: &'s Photons) -> Scenery<'s> {
+        Scenery { lit: self.lit, camera, size: self.size, samples, photons }
+    }
+
+    /// How photons reach samples.
+    pub fn gathering(&self) -> &Gathering {
+        &self.gathering
     }
 
     /// Renders a frame and keeps everything that it makes.
@@ -111,9 +142,9 @@ impl<'a> CpuFrame<'a> {
         let (pool, lit) = (self.device.pool(), self.lit);
         let samples = pool.install(|| samples::of(lit, camera, &seen));
         let direct = direct::light(pool, self.caster.as_mut(), lit, &self.setting, (&seen, &samples), interrupted)?;
-        let irradiance = self.irradiance(&samples, &photons, interrupted)?;
+        let (gathered, irradiance) = self.gather(camera, &samples, &photons, interrupted)?;
         let picture = pool.install(|| mix::picture(&samples, &direct, &irradiance));
-        Ok(Stages { traced, photons, samples, direct, irradiance, picture })
+        Ok(Stages { traced, photons, samples, direct, gathered, irradiance, picture })
     }
 
     /// Renders a frame into `out`, which has an element for each pixel, rows from the top.

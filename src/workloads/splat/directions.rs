@@ -13,8 +13,8 @@ pub fn face(vector: Vec3A) -> u32 {
     2 * axis + u32::from(vector[axis as usize] < 0.0)
 }
 
-/// The index of a vector's direction: 9 x its face + 3 x its cell along the first of the other two axes + its cell along
-/// the second.
+/// The index of a vector's direction: 9 x its face + 3 x its cell along the first of the other two axes + its cell
+/// along the second.
 pub fn direction_index(vector: Vec3A) -> u32 {
     let face = face(vector);
     let [first, second] = others(face / 2);

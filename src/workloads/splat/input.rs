@@ -1,9 +1,9 @@
 //! A scene of photon splatting, opened: what its cases share.
 
 use super::case::{SplatCase, light_choices};
+use super::gathering::Gathering;
 use super::lit::{self, LitScene};
 use super::run::{self, SplatRun};
-use super::setting::Estimate;
 use super::workload::{Splat, WORKLOAD};
 use super::{CpuFrame, pictures, references};
 use crate::camera::{Camera, CameraPath};
@@ -48,8 +48,8 @@ pub struct SplatInput<'a> {
     pub(super) photons: RefCell<HashMap<String, (String, String)>>,
     /// Planted by a test.
     pub(super) fault: Option<super::Fault>,
-    /// The first case: pictures are of it.
-    pub(super) first: SplatCase,
+    /// The cases: pictures are of the first of them, and of the first of each technique.
+    pub(super) pictured: Vec<SplatCase>,
 }
 
 /// A scene with its lights.
@@ -126,7 +126,7 @@ impl<'a> SplatInput<'a> {
             cache: workload.cache.clone().or_else(references::folder),
             photons: RefCell::default(),
             fault: workload.fault,
-            first: SplatCase::parse(first)?,
+            pictured: cases.iter().map(SplatCase::parse).collect::<Result<_>>()?,
         })
     }
 
@@ -142,12 +142,26 @@ impl<'a> SplatInput<'a> {
         }
     }
 
+    /// How photons reach samples in images of a case in a size.
+    ///
+    /// # Errors
+    /// [`Error::Refused`] for keys of too many bits, and for a radius out of range.
+    pub fn gathering(&self, case: &SplatCase, size: Size) -> Result<Gathering> {
+        Gathering::new(case, &self.lit(case)?.scene, &self.path(case)?.cameras, size)
+    }
+
     /// The twins of a case's frames, which trace through the reference tree.
     ///
     /// # Errors
     /// Those of [`run::cpu_frame`].
-    pub fn twin<'s>(&'s self, lit: &'s Lit, case: &SplatCase, estimate: Estimate, size: Size) -> Result<CpuFrame<'s>> {
-        run::cpu_frame(&self.cpu, lit, &self.reference, &Selection::parse(REFERENCE_TREE)?, case, estimate, size)
+    pub fn twin<'s>(
+        &'s self,
+        lit: &'s Lit,
+        case: &SplatCase,
+        gathering: Gathering,
+        size: Size,
+    ) -> Result<CpuFrame<'s>> {
+        run::cpu_frame(&self.cpu, lit, &self.reference, &Selection::parse(REFERENCE_TREE)?, case, gathering, size)
     }
 
     /// The camera path of a case.
@@ -295,6 +309,6 @@ impl Input for SplatInput<'_> {
     }
 
     fn has_pictures(&self) -> bool {
-        pictures::are_there(self.context.out, &self.scene().name)
+        pictures::are_there(self.context.out, &self.scene().name, &self.pictured)
     }
 }

@@ -4,9 +4,12 @@
 //! Samples: the camera's nearest hits, with their direct light. Estimate: the indirect light of each sample.
 //! `docs/splat.md` says what of it is the source's.
 
+mod accounting;
 pub mod bounce;
 pub mod camera;
 mod case;
+pub mod cluster_axes;
+mod cluster_counts;
 pub mod clusters;
 mod count;
 pub mod cpu;
@@ -14,12 +17,17 @@ pub mod direct;
 pub mod directions;
 pub mod emit;
 pub mod estimate;
+pub mod exact_verify;
+pub mod gathered;
+mod gathered_verify;
+pub mod gathering;
 pub mod gpu;
 mod input;
 pub mod lights;
 pub mod lit;
 mod memory;
 pub mod mix;
+mod path_counts;
 pub mod photons;
 mod pictures;
 pub mod radius;

@@ -56,6 +56,7 @@ pub fn compare(
     let [own, exact] = [&estimate, &traced.irradiance].map(|all| all.iter().sum::<DVec3>().element_sum());
     let count = (3 * pixels.len()).max(1) as f64;
     let squares = estimate.iter().zip(&traced.irradiance).map(|(a, b)| (*a - *b).length_squared()).sum::<f64>();
+    let (scale, scaled) = best_scale(&estimate, &traced.irradiance);
     let error = traced.sum_error / 3.0;
     let relative = traced.relative_error();
     verdict.metrics.extend([
@@ -64,6 +65,8 @@ pub fn compare(
         Metric::new("path_traced_error_pct", round(100.0 * relative, 3)),
         Metric::new("path_traced_paths", traced.paths),
         Metric::new("rmse", digits((squares / count).sqrt())),
+        Metric::new("best_scale", digits(scale)),
+        Metric::new("rmse_scaled", digits((scaled / count).sqrt())),
     ]);
     if exact > 0.0 {
         verdict.metrics.push(Metric::new("ratio_to_path_traced", round(own / exact, 6)));
@@ -76,6 +79,16 @@ pub fn compare(
         ));
     }
     Ok(())
+}
+
+/// The factor that brings values nearest to others, 0 where the values are, and the sum of the squared differences that
+/// are left.
+pub fn best_scale(values: &[DVec3], others: &[DVec3]) -> (f64, f64) {
+    let own = values.iter().map(|value| value.length_squared()).sum::<f64>();
+    let common = values.iter().zip(others).map(|(value, other)| value.dot(*other)).sum::<f64>();
+    let scale = if own > 0.0 { common / own } else { 0.0 };
+    let left = values.iter().zip(others).map(|(value, other)| (*value * scale - *other).length_squared()).sum();
+    (scale, left)
 }
 
 /// The reference of a frame.
@@ -111,4 +124,24 @@ fn of(
     let traced = Rc::new(traced);
     input.references.borrow_mut().0.insert(key, traced.clone());
     Ok(traced)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_best_scale_leaves_least() {
+        let values = [DVec3::new(1.0, 2.0, 0.5), DVec3::new(0.0, 4.0, 1.0)];
+        let others = values.map(|value| value * 2.5);
+        let (scale, left) = best_scale(&values, &others);
+        assert!((scale - 2.5).abs() < 1e-12 && left < 1e-20);
+        let others = [DVec3::new(1.0, 1.0, 1.0), DVec3::new(2.0, 0.0, 1.0)];
+        let (scale, left) = best_scale(&values, &others);
+        let at = |scale: f64| {
+            values.iter().zip(&others).map(|(value, other)| (*value * scale - *other).length_squared()).sum::<f64>()
+        };
+        assert!(left < at(scale * 1.01) && left < at(scale * 0.99));
+        assert_eq!(best_scale(&[DVec3::ZERO], &[DVec3::ONE]), (0.0, 3.0));
+    }
 }

@@ -42,8 +42,8 @@ impl Technique {
     /// Reads one element of a list of `--technique`; `all` is every technique without options but `reference`.
     ///
     /// # Errors
-    /// [`Error::Input`] for a name, key or value that does not exist, for a key that is given twice, and for one without
-    /// effect.
+    /// [`Error::Input`] for a name, key or value that does not exist, for a key that is given twice, and for one
+    /// without effect.
     pub fn parse_all(text: &str) -> Result<Vec<Technique>> {
         match text {
             "all" => Ok(NAMES[1..].iter().map(|&(_, gather)| Technique { gather, ..Technique::default() }).collect()),
@@ -72,7 +72,7 @@ impl Technique {
             match technique.set(key, value) {
                 Ok(true) => {}
                 Ok(false) => {
-                    let known = technique.options().map(|(key, _)| key).collect::<Vec<_>>().join(", ");
+                    let known = technique.keys().join(", ");
                     return Err(wrong(format!("{of} has no option '{key}'"), format!("one of {known}")));
                 }
                 Err(all) => {
@@ -123,12 +123,17 @@ impl Technique {
         NAMES.iter().find(|(_, gather)| same(*gather)).map_or("", |(name, _)| name)
     }
 
+    /// The keys of its options.
+    fn keys(self) -> Vec<&'static str> {
+        OPTIONS.into_iter().filter(|key| !matches!(Technique::set(&mut self.clone(), key, ""), Ok(false))).collect()
+    }
+
     /// The options that it has, by their axes.
     fn options(self) -> impl Iterator<Item = (&'static str, String)> {
         self.axes().into_iter().filter(|(_, value)| !value.is_empty())
     }
 
-    /// The options by their axes, empty where the technique does not have them.
+    /// The options by their axes, empty where the technique does not have them; so is the usual form.
     pub fn axes(self) -> [(&'static str, String); 9] {
         let kernel = name(&KERNELS, self.kernel);
         let values = match self.gather {
@@ -146,7 +151,7 @@ impl Technique {
             _ => Default::default(),
         };
         let [kernel, weight, order, tasks, atomics, share] = values.map(str::to_owned);
-        let form = name(&FORMS, self.form).to_owned();
+        let form = if self.form == Form::default() { String::new() } else { name(&FORMS, self.form).to_owned() };
         let values = [kernel, weight, form, order, tasks, atomics, share, blur, level];
         let mut values = values.into_iter();
         OPTIONS.map(|axis| (axis, values.next().unwrap_or_default()))

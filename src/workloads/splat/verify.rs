@@ -6,19 +6,20 @@
 //! differ.
 
 use super::cpu::CpuFrame;
+use super::exact_verify;
+use super::gathered_verify;
 use super::photons::{Photons, Traced};
-use super::reference::exact::{self, Exact};
 use super::samples::Samples;
-use super::setting::Estimate;
+use super::splatting;
+use super::splatting::setting::{Gather, Tasks};
+use super::splatting::verify::SUMS;
 use super::{Stages, mix};
 use crate::camera::Camera;
 use crate::device::Interrupted;
 use crate::error::Result;
 use crate::record::row::{Check, Metric};
 use crate::workloads::size::Size;
-use crate::workloads::splat::reference::pixels::fixed_pixels;
 use glam::{DVec3, Vec4};
-use rayon::ThreadPool;
 
 /// How exactly a device must agree with the twins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,13 +43,6 @@ pub const FLUX: f64 = 0.01;
 /// Where a device rounds differently, the mean position of the photons of a hit may differ by so many standard errors
 /// of as many independent ones.
 pub const MEANS: f64 = 4.0;
-
-/// Pixels whose estimate is computed again in double precision.
-pub const EXACT_PIXELS: u32 = 300;
-
-/// Largest difference of an estimate from the sum in double precision beyond [`Exact::allowance`], as a share of the
-/// mean of these pixels.
-pub const EXACT: f64 = 1e-5;
 
 /// Two arrays to the bit; `of` says what the other one is.
 pub fn same(what: &str, of: &str, found: &[Vec4], expected: &[Vec4], row: u32) -> Check {
@@ -80,6 +74,17 @@ pub fn close(what: &str, found: &[Vec4], expected: &[Vec4]) -> Check {
         expected.len()
     );
     Check { ok: differing <= most, message, metrics: vec![Metric::new("differing", differing)] }
+}
+
+/// Two images that differ by no more than the order of sums explains.
+pub fn near(what: &str, found: &[Vec4], expected: &[Vec4]) -> Check {
+    let scale = mean(expected).max_element() as f32 * SUMS;
+    // Brighter pixels are sums of more, and round more
+    let allowed = |b: &Vec4| scale.max(b.max_element() * SUMS);
+    let beyond = |(a, b): &(&Vec4, &Vec4)| !((**a - **b).abs().max_element() <= allowed(b));
+    let differing = found.iter().zip(expected).filter(beyond).count() + found.len().abs_diff(expected.len());
+    let message = format!("{what}: {differing} elements differ by more than {SUMS:.0e} of the mean");
+    Check { ok: differing == 0, message, metrics: vec![Metric::new("differing", differing)] }
 }
 
 /// What arrays are compared with.
@@ -127,7 +132,7 @@ pub fn traced(found: &Traced, expected: &Traced, exactness: Exactness) -> Vec<Ch
         let noise = 1.0 / f64::from(expected.arrived[hit - 1].max(1)).sqrt();
         let excess = (own - twin).abs() / twin.abs().max(f64::MIN_POSITIVE) / (FLUX + noise);
         // Not a number is the worst of all
-        if !(excess <= worst.0) {
+        if !(excess <= worst.0 || worst.0.is_nan()) {
             worst = (excess, hit);
         }
     }
@@ -184,9 +189,30 @@ pub fn stages(
     let mut checks = traced(&found.traced, &twin.trace(interrupted)?, exactness);
     checks.push(compaction(found));
     checks.extend(seen(found, &mut twin, camera, exactness, interrupted)?);
-    let irradiance = twin.irradiance(&found.samples, &found.photons, interrupted)?;
-    checks.push(arrays("irradiance", &found.irradiance, &irradiance, size.width, exactness));
+    checks.extend(gathered(found, &twin, camera, exactness, interrupted)?);
     checks.push(mixed(found, size, exactness));
+    Ok(checks)
+}
+
+/// What lies between samples and irradiance, and irradiance, against the twins.
+fn gathered(
+    found: &Stages,
+    twin: &CpuFrame,
+    camera: &Camera,
+    exactness: Exactness,
+    interrupted: Interrupted,
+) -> Result<Vec<Check>> {
+    let view = twin.scenery(camera, &found.samples, &found.photons);
+    let (pool, gathering) = (twin.pool(), twin.gathering());
+    let mut checks = gathered_verify::check(pool, gathering, &view, &found.gathered, exactness)?;
+    // From something wrong nothing follows
+    if checks.iter().all(|check| check.ok) {
+        let irradiance = gathered_verify::irradiance(pool, gathering, &view, &found.gathered, interrupted)?;
+        // Sums of given lists and buckets have an order; only a queue's have none
+        let is_repeatable = !matches!(gathering.gather, Gather::PerSample { tasks: Tasks::Queue, .. });
+        let row = view.size.width;
+        checks.push(splatting::verify::irradiance(&found.irradiance, &irradiance, is_repeatable, exactness, row));
+    }
     Ok(checks)
 }
 
@@ -214,7 +240,7 @@ fn seen(
 }
 
 /// Checks of a whole image: compaction, samples and direct light against the twins, the estimate against sums in double
-/// precision, and the mix.
+/// precision, those of buckets against the twins as well, and the mix.
 ///
 /// # Errors
 /// [`crate::Error::Interrupted`].
@@ -223,13 +249,19 @@ pub fn image(
     mut twin: CpuFrame,
     camera: &Camera,
     exactness: Exactness,
-    estimate: Estimate,
     interrupted: Interrupted,
 ) -> Result<Vec<Check>> {
     let size = twin.size();
     let mut checks = vec![compaction(found), sound(found, size)];
     checks.extend(seen(found, &mut twin, camera, exactness, interrupted)?);
-    checks.push(self::estimate(twin.pool(), found, estimate, size, interrupted)?);
+    if twin.gathering().gather.has_clusters() {
+        checks.extend(gathered(found, &twin, camera, exactness, interrupted)?);
+    }
+    // From something wrong nothing follows
+    if checks.iter().all(|check| check.ok) {
+        let view = twin.scenery(camera, &found.samples, &found.photons);
+        checks.extend(exact_verify::estimate(twin.pool(), found, twin.gathering(), &view, interrupted)?);
+    }
     checks.push(mixed(found, size, exactness));
     Ok(checks)
 }
@@ -256,42 +288,6 @@ pub fn compaction(found: &Stages) -> Check {
 fn mixed(found: &Stages, size: Size, exactness: Exactness) -> Check {
     let picture = mix::picture(&found.samples, &found.direct, &found.irradiance);
     arrays("the picture", &found.picture, &picture, size.width, exactness)
-}
-
-/// The estimate at fixed pixels against sums in double precision over all photons.
-///
-/// # Errors
-/// [`crate::Error::Interrupted`].
-pub fn estimate(
-    pool: &ThreadPool,
-    found: &Stages,
-    estimate: Estimate,
-    size: Size,
-    interrupted: Interrupted,
-) -> Result<Check> {
-    let pixels = fixed_pixels(size, EXACT_PIXELS);
-    let exact = exact::irradiance(pool, &found.samples, &found.photons, &estimate, &pixels, interrupted)?;
-    // Pixels without a surface have no light and do not count
-    let lit: Vec<&Exact> = exact.iter().filter(|exact| exact.photons > 0).collect();
-    let mean = lit.iter().map(|exact| exact.value).sum::<DVec3>().max_element() / lit.len().max(1) as f64;
-    let excess = |(&pixel, exact): (&u32, &Exact)| {
-        let own = found.irradiance[pixel as usize].truncate().as_dvec3();
-        ((own - exact.value).abs() - exact.allowance()).max_element()
-    };
-    let mut worst = f64::NEG_INFINITY;
-    for excess in pixels.iter().zip(&exact).map(excess) {
-        if !(excess <= worst) {
-            worst = excess;
-        }
-    }
-    // Where nothing is to be found, everything is too much
-    let share = if worst <= 0.0 { 0.0 } else { worst / mean };
-    let message = format!(
-        "the irradiance of {} pixels differs from sums in double precision by at most {share:.2e} of the mean more than \
-         rounding allows (limit: {EXACT:.0e})",
-        pixels.len()
-    );
-    Ok(Check { ok: share <= EXACT, message, metrics: vec![Metric::new("pixels", pixels.len())] })
 }
 
 /// Mean by channel.

@@ -36,11 +36,12 @@ fn names_select_sources_and_devices() {
     assert_eq!(named(&["thesis", "thesis"]).unwrap(), ["thesis"]);
     let error = named(&["2009"]).unwrap_err();
     assert_eq!((error.exit_code(), error.to_string().contains("one of thesis, rt2")), (2, true), "{error}");
-    assert_eq!(select_device(&ALL, "8600gt").unwrap(), [Some(1), None, None]);
+    assert_eq!(select_device(&ALL, "8600gt").unwrap(), [Some(1), None, None, None]);
+    assert_eq!(select_device(&ALL, "amd radeon rx 480").unwrap(), [None, None, None, Some(1)]);
     assert!(select_device(&ALL, "RTX").unwrap_err().to_string().contains("GTX280, 8600GT"));
     let error = select_device(&[&rtbench::sources::rt2::SOURCE], "RTX").unwrap_err().to_string();
     assert!(error.contains("rt2 published times of no device"), "{error}");
-    assert_eq!(select_tables(&ALL, "5.4,4.6").unwrap(), [vec!["5.4"], vec!["4.6"], vec![]]);
+    assert_eq!(select_tables(&ALL, "5.4,4.6").unwrap(), [vec!["5.4"], vec!["4.6"], vec![], vec![]]);
 }
 
 /// What the thesis's source says of a structure by its name holds for structures that there are; others need no entry.

@@ -7,9 +7,11 @@ use rtbench::camera::Camera;
 use rtbench::device::{CpuDevice, POISON, VulkanDevice};
 use rtbench::scene::{self, Scene};
 use rtbench::workloads::size::Size;
+use rtbench::workloads::splat::clusters::setting::ClusterSetting;
 use rtbench::workloads::splat::gpu::{GpuFrame, stages};
 use rtbench::workloads::splat::lit::{LitScene, PointLight};
 use rtbench::workloads::splat::setting::{Energy, Estimate, EstimateKernel, Falloff, Setting, Weight};
+use rtbench::workloads::splat::splatting::setting::Gather;
 use rtbench::workloads::splat::{CpuFrame, Stages};
 use rtbench::workloads::trace::Selection;
 use rtbench::workloads::trace::backend::Backend;
@@ -156,7 +158,8 @@ fn groups_and_the_order_of_frames_change_no_bit() {
     for (cameras, last) in [(vec![camera, turned], &b), (vec![turned, camera], &a), (vec![camera; 3], &a)] {
         let times = frame.time(&cameras, &|| false).unwrap();
         assert_eq!(times.len(), cameras.len());
-        assert!(times.iter().all(|time| time.stages.is_empty() || time.stages.len() == stages(SETTING).len()));
+        assert!(times.iter().all(|time| time.stages.is_empty()
+            || time.stages.len() == stages(SETTING, Gather::Reference, &ClusterSetting::default()).len()));
         assert_eq!(frame.last().unwrap(), last.picture);
         assert_eq!(frame.photons().unwrap(), last.photons.len());
         assert_eq!(frame.arrived().unwrap(), last.traced.arrived);
@@ -178,7 +181,7 @@ fn groups_and_the_order_of_frames_change_no_bit() {
         }
     }
     assert_eq!(
-        stages(SETTING),
+        stages(SETTING, Gather::Reference, &ClusterSetting::default()),
         ["hit-1", "hit-2", "hit-3", "hit-4", "compaction", "samples", "direct", "estimate", "mix"]
     );
     let kernels = frame.kernels();

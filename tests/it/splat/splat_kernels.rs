@@ -14,11 +14,11 @@ fn module(kernel: Kernel) -> naga::Module {
 #[test]
 fn every_kernel_is_valid_and_has_its_own_text() {
     let all = gpu::kernels().unwrap();
-    assert_eq!(all.len(), 14);
+    assert!(all.len() > 100, "{}", all.len());
     for (name, source) in &all {
         let module = naga::front::wgsl::parse_str(&source.text)
             .unwrap_or_else(|error| panic!("{name}: {}", error.emit_to_string(&source.text)));
-        Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module).unwrap();
+        Validator::new(ValidationFlags::all(), Capabilities::SHADER_FLOAT32_ATOMIC).validate(&module).unwrap();
         for word in [" dot(", " normalize(", " cross(", " length(", "sin(", "cos(", "pow(", "fma("] {
             assert!(!source.text.contains(word), "{name}: the bits of{word} are the driver's choice");
         }

@@ -1,74 +1,33 @@
 //! Photon splatting on the harness: what is typed, what is planned, and what becomes of what cannot be or is wrong.
 
+use super::rows::*;
 use crate::support::own_gpu;
 use glam::Vec4;
-use rtbench::device::{CpuDevice, Device};
-use rtbench::harness::previous::PreviousRun;
-use rtbench::harness::run::{self, Job, Opened};
+use rtbench::device::Device;
+use rtbench::harness::workload::{Library, Workload};
 use rtbench::harness::{Plan, Request};
-use rtbench::record::journal::Journal;
-use rtbench::record::row::{Row, Status};
-use rtbench::workloads::splat::{Fault, SPLAT, Splat, SplatCase, Stages};
-use std::path::Path;
-
-fn request(values: &[(&str, &str)]) -> Request {
-    // A technique that is given is measured as the preset's first part says
-    let mut all = vec![
-        ("scene", "box"),
-        ("technique", "reference"),
-        ("resolution", "64x36"),
-        ("paths", "300"),
-        ("radius", "0.2"),
-    ];
-    all.retain(|(axis, _)| !values.iter().any(|(given, _)| given == axis));
-    let values = all.iter().chain(values).map(|(axis, value)| (axis.to_string(), vec![value.to_string()]));
-    Request { values: values.collect(), frames: Some(2), passes: Some(2), warmup: Some(0), ..Request::default() }
-}
-
-/// What is planted.
-#[derive(Default)]
-struct Faults(Option<Fault>);
-
-fn measured(device: Device, faults: Faults, request: &Request, out: &Path) -> Journal {
-    // References are kept with the run, not where the user's are
-    let workload = &Splat { fault: faults.0, cache: Some(out.join("cache")) };
-    let plan = Plan::new(workload, request).unwrap();
-    let outcome = run::run(Job {
-        workload,
-        plan: &plan,
-        out,
-        previous: PreviousRun::default(),
-        arguments: vec![],
-        devices: vec![Opened { device, reason: "a test".into() }],
-        open: &|_| panic!("no device is lost"),
-        interrupted: &|| false,
-        watch: &mut |_| (),
-    });
-    outcome.unwrap().journal
-}
-
-fn on_cpu() -> Device {
-    Device::Cpu(CpuDevice::new(2).unwrap())
-}
-
-/// Devices of this machine.
-fn devices() -> Vec<Device> {
-    std::iter::once(on_cpu()).chain(own_gpu(false).map(Device::Vulkan)).collect()
-}
-
-fn the_row(journal: &Journal) -> &Row {
-    assert_eq!(journal.rows.len(), 1, "{:?}", journal.rows);
-    &journal.rows[0]
-}
+use rtbench::record::row::Status;
+use rtbench::workloads::splat::{Fault, SPLAT, SplatCase, Stages};
 
 #[test]
 fn every_case_is_read_as_it_is_written() {
-    for preset in ["quick", "splat-reference"] {
-        let plan = Plan::new(&SPLAT, &Request { preset: Some(preset.into()), ..Request::default() }).unwrap();
+    // Plans read no more than the first lines of a scene's file
+    let folder = tempfile::tempdir().unwrap();
+    for scene in ["sponza", "sibenik"] {
+        std::fs::create_dir(folder.path().join(scene)).unwrap();
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+        std::fs::write(folder.path().join(scene).join(format!("{scene}.obj")), text).unwrap();
+    }
+    let library = Library { scenes_folder: Some(folder.path().to_owned()), ..Library::default() };
+    for preset in ["quick", "splat", "splat-lite", "splat-reference"] {
+        let request = Request { preset: Some(preset.into()), library: library.clone(), ..Request::default() };
+        let plan = Plan::new(&SPLAT, &request).unwrap();
         assert!(!plan.cases.is_empty());
         for case in &plan.cases {
             let again = SplatCase::parse(case).unwrap().to_case(case.axis("scene"));
             assert_eq!(again.axes, case.axes);
+            let budget = SPLAT.info().budget.unwrap();
+            assert!(case.work <= budget, "{preset}: {} is above the budget: {:?}", case.work, case.axes);
         }
     }
 }
@@ -76,7 +35,9 @@ fn every_case_is_read_as_it_is_written() {
 #[test]
 fn what_cannot_be_is_refused_with_its_flag() {
     for (axis, value, problem) in [
-        ("technique", "buckets", "there is no technique 'buckets'"),
+        ("technique", "bucket", "there is no technique 'bucket'"),
+        ("technique", "buckets:level=6", "one of 1 to 5"),
+        ("technique", "tiled:order=any", "tiled has no option 'order'"),
         ("technique", "reference:kernel=box", "one of epanechnikov, constant"),
         ("radius", "0", "is not above 0"),
         ("radius", "-3u", "is not above 0"),

@@ -1,6 +1,6 @@
 //! Keys: how many bits tile and slice have, and where each of them is.
 
-use super::setting::{ClusterSetting, KeyOrder, Normals};
+use super::setting::{ClusterSetting, KeyOrder, Unique};
 use crate::error::{Error, Result};
 use crate::workloads::size::Size;
 
@@ -13,12 +13,17 @@ pub const MAX_KEY_BITS: u32 = 25;
 /// Fewest bits of a key: the source's 7 + 7 + 9.
 pub const MIN_KEY_BITS: u32 = 23;
 
+/// Bits of a word that tiles are sorted by, one less than it has: all ones are no sample.
+const MAX_SORTED_BITS: u32 = 31;
+
 /// Bits of the source's key for column, row and slice.
 const USUAL: [u32; 3] = [7, 7, 9];
 
 /// The keys of an image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KeyLayout {
+    /// The image.
+    pub size: Size,
     /// Side of a tile, in pixels.
     pub tile: u32,
     /// Tiles in a row; the last may be incomplete.
@@ -50,18 +55,15 @@ impl KeyLayout {
     /// are `near` to `far`.
     ///
     /// # Errors
-    /// [`Error::Refused`] for keys of more than [`MAX_KEY_BITS`] bits.
+    /// [`Error::Refused`] for keys of more than [`MAX_KEY_BITS`] bits, and for tiles to be sorted whose slices, normals
+    /// and pixels are too many for one word.
     pub fn new(setting: &ClusterSetting, size: Size, field_of_view: f32, (near, far): (f32, f32)) -> Result<KeyLayout> {
         let tile = setting.tile;
         let (columns, rows) = (size.width.div_ceil(tile), size.height.div_ceil(tile));
         let tiles_high = f64::from(size.height) / f64::from(tile);
         let slices =
             ((f64::from(far) / f64::from(near)).ln() / ratio(field_of_view, tiles_high).ln()).floor() as u32 + 1;
-        let normal = match setting.normals {
-            Normals::Off => 0,
-            Normals::Faces => 3,
-            Normals::Cells => 6,
-        };
+        let normal = setting.normals.bits();
         let need = [columns, rows, slices].map(bits_for);
         let fits = normal == 0 && need.iter().zip(&USUAL).all(|(need, usual)| need <= usual);
         let [x, y, mut z] = if fits { USUAL } else { need };
@@ -75,7 +77,23 @@ impl KeyLayout {
             );
             return Err(Error::too_large("the key of a cluster", problem, "give a larger --tile or fewer --normals"));
         }
-        Ok(KeyLayout { tile, columns, rows, slices, bits: [x, y, z, normal], order: setting.key, near, tiles_high })
+        let sorted = need[2] + normal + 2 * bits_for(tile);
+        if setting.unique == Unique::Sort && sorted > MAX_SORTED_BITS {
+            let problem = format!(
+                "{} bits for {slices} slices, {normal} for normals and {} for the pixels of a tile are {sorted}, at most \
+                 {MAX_SORTED_BITS} are possible",
+                need[2],
+                2 * bits_for(tile),
+            );
+            return Err(Error::too_large("a word to be sorted", problem, "use another --unique"));
+        }
+        let bits = [x, y, z, normal];
+        Ok(KeyLayout { size, tile, columns, rows, slices, bits, order: setting.key, near, tiles_high })
+    }
+
+    /// The bits that differ between the keys of a tile: those of slices that exist, and of normals.
+    pub fn within_tile(&self) -> u32 {
+        self.encode(0, 0, (1 << bits_for(self.slices)) - 1, (1 << self.bits[3]) - 1)
     }
 
     /// Bits of a key, [`MIN_KEY_BITS`] to [`MAX_KEY_BITS`].
@@ -158,6 +176,7 @@ impl KeyLayout {
 
 #[cfg(test)]
 mod tests {
+    use super::super::setting::Normals;
     use super::*;
 
     fn layout(setting: ClusterSetting, width: u32, height: u32, field_of_view: f32) -> Result<KeyLayout> {

@@ -15,8 +15,8 @@ pub struct Placement {
     pub origin: Vec3,
     /// Its axes, unit vectors.
     pub axes: [Vec3; 3],
-    /// What a distance in it may be too large by: photons are splatted with so much more radius, so that rounding leaves
-    /// none out.
+    /// What a distance in it may be too large by: photons are splatted with so much more radius, so that rounding
+    /// leaves none out.
     pub margin: f32,
 }
 

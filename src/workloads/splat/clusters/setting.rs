@@ -22,6 +22,17 @@ pub enum Normals {
     Cells,
 }
 
+impl Normals {
+    /// Bits of a key.
+    pub fn bits(self) -> u32 {
+        match self {
+            Normals::Off => 0,
+            Normals::Faces => 3,
+            Normals::Cells => 6,
+        }
+    }
+}
+
 /// How the set of keys is found. All ways find the same set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Unique {

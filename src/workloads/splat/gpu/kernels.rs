@@ -126,5 +126,9 @@ impl Variant for Kernel {
 /// # Errors
 /// [`Error::Device`] for an include that does not exist (a mistake in `kernels/`).
 pub fn kernels() -> Result<Vec<(String, Source)>> {
-    Kernel::all().into_iter().map(|kernel| Ok((kernel.label(), kernel.assemble()?))).collect()
+    let own = Kernel::all().into_iter().map(|kernel| Ok((kernel.label(), kernel.assemble()?)));
+    let mut all = own.collect::<Result<Vec<_>>>()?;
+    all.extend(super::splatting::kernels()?);
+    all.extend(super::clusters::kernels()?);
+    Ok(all)
 }

@@ -2,6 +2,7 @@
 
 mod buffers;
 pub mod clusters;
+mod gather;
 mod inputs;
 pub mod kernels;
 mod passes;
@@ -15,12 +16,16 @@ pub use steps::{Count, Steps, Variant};
 pub use uniforms::*;
 
 use super::Stages;
-use super::clusters::Placement;
-use super::clusters::setting::Space;
+use super::cluster_axes::Sync;
+use super::clusters::Clusters;
+use super::clusters::setting::{ClusterSetting, HierarchyBy};
+use super::gathered::Gathered;
+use super::gathering::Gathering;
 use super::lit::LitScene;
 use super::photons::{Photons, Traced};
 use super::samples::Samples;
-use super::setting::{Estimate, Setting};
+use super::setting::Setting;
+use super::splatting::setting::Gather;
 use crate::camera::Camera;
 use crate::device::vulkan::{Buffer, Dispatch};
 use crate::device::{Frame, FrameTime, Interrupted, KernelInfo, Submissions, VulkanDevice};
@@ -29,6 +34,7 @@ use crate::workloads::size::Size;
 use crate::workloads::trace::gpu::RayCaster;
 use crate::workloads::trace::{Method, Structure};
 use buffers::{Buffers, Sizes};
+use gather::Gatherer;
 use glam::Vec4;
 use inputs::Inputs;
 use passes::Maker;
@@ -37,9 +43,16 @@ use passes::Maker;
 const MAX_FRAMES: usize = 256;
 
 /// The stages of a frame, in their order.
-pub fn stages(setting: Setting) -> Vec<&'static str> {
+pub fn stages(setting: Setting, gather: Gather, clusters: &ClusterSetting) -> Vec<&'static str> {
     let hits = passes::HITS.iter().take(setting.hits as usize).map(|stage| stage.0);
-    hits.chain(["compaction", "samples", "direct", "estimate", "mix"]).collect()
+    let mut stages: Vec<&str> = hits.chain(["compaction", "samples", "direct"]).collect();
+    if gather.has_clusters() {
+        stages.extend(["keys", "unique", "bounds"]);
+        stages.extend((clusters.hierarchy == HierarchyBy::Masks).then_some("hierarchy"));
+    }
+    stages.extend(splatting::stages(gather));
+    stages.push("mix");
+    stages
 }
 
 /// A scene and a structure on a device, with everything that decides a frame but the camera.
@@ -47,11 +60,14 @@ pub struct GpuFrame<'a> {
     device: &'a VulkanDevice,
     lit: &'a LitScene,
     setting: Setting,
+    gathering: Gathering,
     size: Size,
     sizes: Sizes,
     buffers: Buffers,
     inputs: Inputs,
     steps: Steps<'a>,
+    /// Absent for the reference estimate.
+    gatherer: Option<Gatherer>,
     /// Bytes of vertices and materials, and of the structure.
     scene_bytes: (u64, u64),
     /// No frame has run since the buffers were poisoned.
@@ -70,9 +86,10 @@ impl<'a> GpuFrame<'a> {
         structure: &'a dyn Structure,
         method: Method,
         setting: Setting,
-        estimate: Estimate,
+        gathering: impl Into<Gathering>,
         size: Size,
     ) -> Result<GpuFrame<'a>> {
+        let gathering = gathering.into();
         let sizes = Sizes::new(&setting, size, device.max_binding())?;
         let shares = lit.shares(setting.paths)?;
         Buffers::check(device, &sizes)?;
@@ -84,14 +101,36 @@ impl<'a> GpuFrame<'a> {
             caster: &caster,
             lit,
             setting: &setting,
-            estimate: &estimate,
+            estimate: &gathering.estimate,
             sizes: &sizes,
             buffers: &buffers,
             inputs: &inputs,
         };
-        let steps = maker.steps()?;
+        let mut steps = Steps::new(device);
+        let photons = maker.seen(&mut steps)?;
+        let gatherer = match gathering.gather {
+            Gather::Reference => {
+                maker.estimates(&mut steps, &photons)?;
+                None
+            }
+            _ => Some(Gatherer::new(device, &mut steps, &gathering, (&sizes, size), &buffers, &photons)?),
+        };
+        maker.mix(&mut steps)?;
         let scene_bytes = caster.allocated();
-        Ok(GpuFrame { device, lit, setting, size, sizes, buffers, inputs, steps, scene_bytes, is_poisoned: true })
+        Ok(GpuFrame {
+            device,
+            lit,
+            setting,
+            gathering,
+            size,
+            sizes,
+            buffers,
+            inputs,
+            steps,
+            gatherer,
+            scene_bytes,
+            is_poisoned: true,
+        })
     }
 
     /// The kernels, each once.
@@ -102,6 +141,7 @@ impl<'a> GpuFrame<'a> {
     /// Name and bytes of each buffer; the scene's and the structure's as one each.
     pub fn buffers(&self) -> Vec<(&'static str, u64)> {
         let mut all = Buffers::bytes(&self.sizes);
+        all.extend(self.gatherer.iter().flat_map(Gatherer::bytes));
         all.extend(self.inputs.bytes);
         let scan = self.steps.scan_bytes();
         let (geometry, structure) = self.scene_bytes;
@@ -119,8 +159,13 @@ impl<'a> GpuFrame<'a> {
         let mut times = Vec::with_capacity(cameras.len());
         self.is_poisoned = cameras.is_empty();
         for cameras in cameras.chunks(MAX_FRAMES) {
-            times.extend(self.run(cameras, |frames| self.device.run_frames(frames, interrupted))?);
+            times.extend(self.run(cameras, |frames| match self.gathering.sync {
+                Sync::Device => self.device.run_frames(frames, interrupted),
+                Sync::Readback => self.device.run_frames_by_read_back(frames, interrupted),
+            })?);
         }
+        // One of many frames may have had no room for its photons
+        self.gatherer.as_ref().map_or(Ok(()), |gatherer| gatherer.check(self.device))?;
         Ok(times)
     }
 
@@ -148,9 +193,27 @@ impl<'a> GpuFrame<'a> {
                 albedos: self.image(&buffers.albedos)?,
             },
             direct: self.image(&buffers.direct)?,
+            gathered: self.gatherer.as_ref().map_or(Ok(Gathered::default()), |own| own.read(self.device))?,
             irradiance: self.image(&buffers.irradiance)?,
             picture: self.last()?,
         })
+    }
+
+    /// The clusters of a view.
+    ///
+    /// # Errors
+    /// [`Error::Device`] for a frame without clusters; [`Error::Interrupted`] between passes; the device's.
+    pub fn clusters(&mut self, camera: &Camera, interrupted: Interrupted) -> Result<Clusters> {
+        self.is_poisoned = false;
+        self.run(std::slice::from_ref(camera), |frames| {
+            let is_needed = |stage: &str| ["samples", "keys", "unique", "bounds", "hierarchy"].contains(&stage);
+            frames.iter().try_for_each(|frame| {
+                let passes = frame.passes.iter().filter(|pass| is_needed(pass.stage.0)).copied().collect();
+                self.device.run_until(&Frame { passes, ..frame.clone() }, interrupted).map(drop)
+            })
+        })?;
+        let clusters = self.gatherer.as_ref().map_or(Ok(None), |gatherer| gatherer.clusters(self.device))?;
+        clusters.ok_or_else(|| Error::Device("a frame without clusters".into()))
     }
 
     /// The picture of the last frame, rows from the top.
@@ -185,6 +248,9 @@ impl<'a> GpuFrame<'a> {
     fn poison(&mut self) {
         if !self.is_poisoned {
             self.buffers.poison(self.device);
+            if let Some(gatherer) = &self.gatherer {
+                gatherer.reset(self.device);
+            }
             self.is_poisoned = true;
         }
     }
@@ -202,25 +268,28 @@ impl<'a> GpuFrame<'a> {
     fn run<T>(&self, cameras: &[Camera], work: impl FnOnce(&[Frame<Dispatch>]) -> Result<T>) -> Result<T> {
         let stride = self.device.uniform_stride(size_of::<View>());
         let mut uniforms = vec![0_u8; cameras.len() * stride as usize];
+        let mut borders = Borders::default();
         for (place, camera) in uniforms.chunks_exact_mut(stride as usize).zip(cameras) {
-            place[..size_of::<View>()].copy_from_slice(bytemuck::bytes_of(&self.view(camera)?));
+            let first_border = borders.of(&self.gathering, camera.field_of_view);
+            place[..size_of::<View>()].copy_from_slice(bytemuck::bytes_of(&self.view(camera, first_border)?));
         }
         let views = self.device.uniform("the cameras", &uniforms)?;
-        let borders = self.device.storage("the borders of slices", &[0.0_f32])?;
+        let borders = self.device.storage("the borders of slices", &borders.all)?;
         let bound = self.steps.bind_views(&views, &borders);
         self.device.check()?;
-        let submissions =
-            if self.steps.count(passes::ESTIMATE) > 1 { Submissions::PerPass } else { Submissions::PerFrame };
+        // A driver's watchdog may end an estimate over very many photons: it alone is divided
+        let is_divided = self.gatherer.is_none() && self.steps.count(passes::ESTIMATE) > 1;
+        let submissions = if is_divided { Submissions::PerPass } else { Submissions::PerFrame };
         let offsets = (0..cameras.len() as u32).map(|frame| frame * stride);
         let frames: Vec<Frame<Dispatch>> =
             offsets.map(|offset| Frame { passes: self.steps.frame(&bound, offset), submissions }).collect();
         work(&frames)
     }
 
-    fn view(&self, camera: &Camera) -> Result<View> {
+    fn view(&self, camera: &Camera, first_border: u32) -> Result<View> {
         let Size { width, height } = self.size;
         let grid = camera.pixel_grid(width, height);
-        let placement = Placement::new(Space::default(), camera, self.lit.extent);
+        let placement = self.gathering.placement(self.lit, camera);
         Ok(View {
             origin: grid.origin,
             width,
@@ -231,7 +300,7 @@ impl<'a> GpuFrame<'a> {
             down: grid.down,
             epsilon: self.lit.epsilon(),
             forward: camera.direction,
-            first_border: 0,
+            first_border,
             axis_x: placement.axes[0],
             height,
             axis_y: placement.axes[1],
@@ -241,5 +310,27 @@ impl<'a> GpuFrame<'a> {
             axes_origin: placement.origin,
             margin: placement.margin,
         })
+    }
+}
+
+/// Borders of slices for the fields of view of some cameras.
+#[derive(Default)]
+struct Borders {
+    all: Vec<f32>,
+    /// Bits of each field of view, and where its borders begin.
+    known: Vec<(u32, u32)>,
+}
+
+impl Borders {
+    /// Where the borders for a field of view in degrees begin; 0 without clusters.
+    fn of(&mut self, gathering: &Gathering, field_of_view: f32) -> u32 {
+        let Some(layout) = &gathering.layout else { return 0 };
+        if let Some((_, first)) = self.known.iter().find(|(bits, _)| *bits == field_of_view.to_bits()) {
+            return *first;
+        }
+        let first = self.all.len() as u32;
+        self.all.extend(layout.borders(field_of_view));
+        self.known.push((field_of_view.to_bits(), first));
+        first
     }
 }

@@ -44,8 +44,8 @@ const MIX: Stage = Stage("mix");
 pub const MAX_TESTS: u64 = 1 << 33;
 
 /// What passes are made of.
-pub(super) struct Maker<'a, 'd> {
-    pub device: &'d VulkanDevice,
+pub(super) struct Maker<'a> {
+    pub device: &'a VulkanDevice,
     pub caster: &'a RayCaster<'a>,
     pub lit: &'a LitScene,
     pub setting: &'a Setting,
@@ -55,27 +55,32 @@ pub(super) struct Maker<'a, 'd> {
     pub inputs: &'a Inputs,
 }
 
-impl<'d> Maker<'_, 'd> {
-    /// Makes the passes.
+impl Maker<'_> {
+    /// Adds the passes of photons, samples and direct light. The first word of the buffer is the number of photons.
     ///
     /// # Errors
     /// The device's.
-    pub fn steps(&self) -> Result<Steps<'d>> {
-        let mut steps = Steps::new(self.device);
-        self.photons(&mut steps)?;
-        let photons = self.compaction(&mut steps)?;
-        self.samples(&mut steps)?;
-        self.direct(&mut steps)?;
-        self.estimates(&mut steps, &photons)?;
+    pub fn seen(&self, steps: &mut Steps) -> Result<Buffer> {
+        self.photons(steps)?;
+        let photons = self.compaction(steps)?;
+        self.samples(steps)?;
+        self.direct(steps)?;
+        for any_hit in [false, true] {
+            steps.know(self.caster.kernel(any_hit)?);
+        }
+        Ok(photons)
+    }
+
+    /// Adds the pass that makes the picture.
+    ///
+    /// # Errors
+    /// The device's.
+    pub fn mix(&self, steps: &mut Steps) -> Result<()> {
         let (buffers, count) = (self.buffers, self.sizes.pixels);
         let job = List { inverse_pi: FRAC_1_PI, ..self.list(count)? };
         let bound = [&buffers.albedos, &buffers.direct, &buffers.irradiance, &buffers.picture];
         steps.add(MIX, &Kernel::Mix, Count::Elements(count), job, &bound)?;
-        for any_hit in [false, true] {
-            steps.know(self.caster.kernel(any_hit)?);
-        }
-        self.device.check()?;
-        Ok(steps)
+        self.device.check()
     }
 
     fn photons(&self, steps: &mut Steps) -> Result<()> {
@@ -188,7 +193,11 @@ impl<'d> Maker<'_, 'd> {
         Ok(())
     }
 
-    fn estimates(&self, steps: &mut Steps, photons: &Buffer) -> Result<()> {
+    /// Adds the passes of the reference estimate.
+    ///
+    /// # Errors
+    /// The device's.
+    pub fn estimates(&self, steps: &mut Steps, photons: &Buffer) -> Result<()> {
         let (buffers, Sizes { slots, pixels, .. }) = (self.buffers, *self.sizes);
         let kernel = Kernel::Estimate(self.estimate.kernel, self.estimate.weight);
         for (first_pixel, end_pixel) in parts(pixels, slots) {

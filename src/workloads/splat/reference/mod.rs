@@ -4,6 +4,7 @@
 //! directions, hit points, normals and albedos, in double precision. [`exact`] and [`cells`] repeat the estimate over
 //! given photons in double precision. [`cache`] keeps results of [`path_traced`] on disk.
 
+pub mod by_direction;
 pub mod cache;
 pub mod cells;
 pub mod exact;

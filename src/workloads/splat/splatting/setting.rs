@@ -83,6 +83,16 @@ pub enum Gather {
 }
 
 impl Gather {
+    /// True if the image is divided into tiles.
+    pub fn has_tiles(self) -> bool {
+        self != Gather::Reference
+    }
+
+    /// True if photons are put into lists.
+    pub fn has_lists(self) -> bool {
+        matches!(self, Gather::PerSample { .. })
+    }
+
     /// True if it needs clusters.
     pub fn has_clusters(self) -> bool {
         matches!(self, Gather::PerSample { .. } | Gather::Buckets(_))

@@ -93,7 +93,7 @@ fn a_run_is_shown_by_the_source_whose_structures_it_has() {
     b.tree("alien", &ROPES, 1.0, 10, 1);
     assert_eq!(fitting(&[b.run]), ["rt2"]);
     // Without runs every source shows what was published.
-    assert_eq!(fitting(&[]), ["thesis", "rt2", "spheres"]);
+    assert_eq!(fitting(&[]), ["thesis", "rt2", "spheres", "splat"]);
 }
 
 #[test]

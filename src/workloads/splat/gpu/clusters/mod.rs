@@ -1,8 +1,16 @@
 //! Passes that put samples into clusters.
 
 mod buffers;
+mod kernels;
+mod read;
+mod steps;
+mod uniforms;
 
 pub use buffers::{BOX_BYTES, ClusterBuffers, ClusterSizes};
+pub use kernels::{ClusterKernel, kernels};
+pub use read::read;
+pub use steps::{BOUNDS, HIERARCHY, KEYS, UNIQUE, steps};
+pub use uniforms::{CountJob, FillJob, KeyJob, NodeJob, TileJob, UniqueJob};
 
 use crate::device::vulkan::Buffer;
 
