@@ -1,5 +1,6 @@
-// From keys to clusters; the including kernel declares `places` and `mask_at`. BITS: places are of words of bits, which
-// begin at a word of the masks. Twin: src/workloads/splat/clusters/lookup.rs.
+// From keys to clusters; the including kernel declares `places` and `mask_at`. With BITS `places` has an entry for each
+// word of bits: the number of keys in the words before it. `first_word` is the first of these words in the masks.
+// Without BITS it has an entry for each key. Twin: src/workloads/splat/clusters/lookup.rs.
 
 const NONE = 0xffffffffu; // the key and the identifier of a pixel without a sample
 

@@ -10,7 +10,8 @@
 const PLACE_BITS = 2u * SIDE_BITS;
 const OWN = (TILE_SAMPLES + GROUP_SIZE - 1u) / GROUP_SIZE; // sorted words of an invocation
 
-// Of each place: the bits of its key that differ within a tile, above the place. Later: changes of each invocation.
+// Of each pixel of the tile: the bits of its key that differ within the tile, shifted above its place. Used again for
+// the number of changes of each invocation.
 var<workgroup> words: array<u32, SORT_WORDS>;
 var<workgroup> sorted: array<u32, TILE_SAMPLES>;
 

@@ -1,4 +1,4 @@
-// As whole numbers. `FULL` and the sum of all flux, of which the scale is made, leave no word without room.
+// As whole numbers. `scale` is chosen by scale.wgsl so that no word overflows.
 
 @group(0) @binding(ACTION + 1) var<storage, read_write> words: array<atomic<u32>>;
 

@@ -9,7 +9,7 @@ struct BlurJob {
     width: u32,
     height: u32,
     row_groups: u32,
-    reach: u32,      // in pixels
+    reach: u32,      // in pixels: twice the standard deviation
     is_vertical: u32,
     depths: f32,     // difference of depths, as a share of the depth, without weight
     one: f32,

@@ -29,7 +29,7 @@ fn block_sum(sample: vec3<f32>, normal: vec3<f32>, first: u32, end: u32) -> vec3
     let terms = Terms(job.radius2, job.peak, job.one);
     var sum = vec3<f32>(0.0, 0.0, 0.0);
     for (var entry = first; entry < end; entry += 1u) {
-        // An entry is a photon's index, but if there are 2^32 entries or more, which overwrite each other
+        // An entry is a photon's index, unless there are 2^32 entries or more, which overwrite each other
         let photon = min(entries[entry], job.slots - 1u);
         sum += term(terms, sample, normal, positions[photon].xyz, directions[photon].xyz, fluxes[photon].xyz);
     }

@@ -6,7 +6,7 @@
 struct Terms {
     radius2: f32, // square of the radius
     peak: f32,    // the kernel's value at distance 0
-    one: f32,
+    one: f32,     // 1, not known to the compiler
 }
 
 fn term(

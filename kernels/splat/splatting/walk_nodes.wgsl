@@ -1,4 +1,5 @@
-// Down five levels of nodes with a small stack: the children of each level that are left, and the key of the node.
+// Down the levels with a stack of masks: on each level the children that are still to be visited. `key` is the node at
+// hand.
 
 @group(0) @binding(6) var<storage, read> masks: array<u32>;
 @group(0) @binding(7) var<storage, read> node_boxes: array<u32>;

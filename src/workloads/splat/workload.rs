@@ -61,7 +61,7 @@ Examples:
   rtbench splat --scene sponza --resolution 480x270 --radius 0.03,0.1 --frames 2
       a scene of the catalogue, two radii
   rtbench splat --scene sibenik --technique per-sample,buckets --resolution 480x270 --tile 8 --radius 0.1
-      the source's two techniques, with as many photons in a cluster
+      the source's two techniques, at a load near that of its charts
   rtbench splat --scene box --technique reference:kernel=epanechnikov,reference:kernel=constant --paths 20000
       two kernels of an estimate over all photons
   rtbench splat --scene hall --light point:x=0,y=3,z=0,flux=100 --hits 6
@@ -79,7 +79,7 @@ scenes: all light, direct light, indirect light, and the photons.",
             "NAME[:KEY=VALUE,..]",
             "per-sample[:kernel=epanechnikov|constant,weight=side|cosine,form=normalised|source,order=any|sorted,\
              tasks=sample|queue], buckets[:form=,atomics=fixed|exchange|float,share=all|centre (with a kernel=),\
-             blur=PIXELS,level=1..5], tiled and reference (each sample over all photons) with kernel=, weight= and \
+             blur=0..16 pixels,level=1..5], tiled and reference (each sample over all photons) with kernel=, weight= and \
              form= as per-sample; all is all but reference; comma list [default: per-sample]",
         ),
         option("kernel", "Weight of a photon by its distance"),
