@@ -64,16 +64,23 @@ fn of_view(view: &View, published: &Published, end: &str) -> Result<Vec<Figure>>
     Ok(figures)
 }
 
-/// The rows of a scene that figures show: both techniques with the usual options at the largest radius, where it is
-/// the published load.
+/// The radius of a row, as a number.
+fn radius(m: &Measurement) -> f64 {
+    m.axis("radius").trim_end_matches('u').parse().unwrap_or(0.0)
+}
+
+/// The rows of a scene that figures show: both techniques with the usual options along the most frames, of these at the
+/// largest radius, where it is the published load.
 fn main_rows<'a>(view: &View<'a>, scene: &SceneKey) -> Vec<(&'a Measurement, usize)> {
     let is = |m: &&Measurement| m.scene == *scene && TECHNIQUES.iter().any(|(name, _)| *name == m.technique());
     let rows: Vec<&Measurement> = view.usual_rows().filter(is).collect();
-    let radius = |m: &Measurement| m.axis("radius").trim_end_matches('u').parse::<f64>().unwrap_or(0.0);
-    let Some(largest) = rows.iter().copied().max_by(|a, b| radius(a).total_cmp(&radius(b))) else { return Vec::new() };
+    let frames = |m: &Measurement| m.axis("frames").parse::<usize>().unwrap_or(0);
+    let better = |a: &&Measurement, b: &&Measurement| frames(a).cmp(&frames(b)).then(radius(a).total_cmp(&radius(b)));
+    let Some(best) = rows.iter().copied().max_by(better) else { return Vec::new() };
+    let is_like =
+        |m: &Measurement| ["radius", "frames", "paths", "tile"].iter().all(|axis| m.axis(axis) == best.axis(axis));
     let of = |(technique, style): (&str, usize)| {
-        let is = |m: &&&Measurement| m.technique() == technique && m.axis("radius") == largest.axis("radius");
-        rows.iter().find(is).map(|m| (*m, style))
+        rows.iter().find(|m| m.technique() == technique && is_like(m)).map(|m| (*m, style))
     };
     TECHNIQUES.into_iter().filter_map(of).collect()
 }
@@ -145,8 +152,9 @@ fn numbered(values: impl IntoIterator<Item = f64>) -> Vec<(f64, f64)> {
 
 /// An axis of frames, without a margin.
 fn frame_axis(frames: usize) -> Axis {
-    let axis = Axis::of_sizes("frame", (1..=frames).map(|frame| frame as f64));
-    Axis { range: (1.0, frames as f64), ticks: axis.ticks.into_iter().filter(|tick| *tick >= 1.0).collect(), ..axis }
+    let step = [1, 2, 5, 10, 20, 50, 100].into_iter().find(|step| frames / step <= 10).unwrap_or(frames.max(1));
+    let ticks = (1..=frames).filter(|frame| step == 1 || frame % step == 0).map(|frame| frame as f64).collect();
+    Axis { label: "frame".to_owned(), log: false, range: (1.0, frames as f64), ticks }
 }
 
 /// Times of stages along the animation, a panel for each technique.
@@ -252,11 +260,19 @@ fn histogram(view: &View, scenes: &[&SceneKey], end: &str) -> Result<Option<Figu
     Figure::draw("histogram", format!("histogram{end}"), caption, &Picture { title, panels, columns: 1 }).map(Some)
 }
 
-/// Errors against time: a line for each technique over radii and numbers of paths.
+/// Errors against time: a line for each technique from the smallest radius to the largest, of rows with the tile and
+/// the number of paths of the rows that other figures show.
 fn quality(view: &View, scenes: &[&SceneKey], end: &str) -> Result<Option<Figure>> {
     let panel = |scene: &&SceneKey| {
         let mut series: Vec<Series> = Vec::new();
-        for m in view.usual_rows().filter(|m| m.scene == **scene) {
+        let of_others = main_rows(view, scene).first().map(|(m, _)| *m);
+        let is_like = |m: &Measurement| {
+            let is = |axis: &&str| m.axis(axis).is_empty() || of_others.is_none_or(|o| o.axis(axis) == m.axis(axis));
+            ["paths", "tile"].iter().all(|axis| is(axis))
+        };
+        let mut rows: Vec<&Measurement> = view.usual_rows().filter(|m| m.scene == **scene && is_like(m)).collect();
+        rows.sort_by(|a, b| radius(a).total_cmp(&radius(b)));
+        for m in rows {
             let Some(rmse) = m.metric("rmse") else { continue };
             let label = m.technique().to_owned();
             match series.iter_mut().find(|series| series.label == label) {
@@ -268,7 +284,6 @@ fn quality(view: &View, scenes: &[&SceneKey], end: &str) -> Result<Option<Figure
                 }
             }
         }
-        series.iter_mut().for_each(|series| series.points.sort_by(|a, b| a.0.total_cmp(&b.0)));
         let points = || series.iter().flat_map(|series| &series.points);
         let log = spreads(points().map(|point| point.1));
         (!series.is_empty()).then(|| Panel {
@@ -288,8 +303,8 @@ fn quality(view: &View, scenes: &[&SceneKey], end: &str) -> Result<Option<Figure
     let columns = if panels.len() == 1 { 1 } else { 2 };
     let title = format!("Errors against time, {}", view.label());
     let caption = format!(
-        "Root mean squared error of indirect irradiance against the time of a frame, rows with the usual options, on \
-         {}.",
+        "Root mean squared error of indirect irradiance against the time of a frame, from the smallest radius to the \
+         largest, rows with the usual options, on {}.",
         view.label()
     );
     Figure::draw("quality", format!("quality{end}"), caption, &Picture { title, panels, columns }).map(Some)
