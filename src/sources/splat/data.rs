@@ -135,7 +135,7 @@ impl Data {
 
     fn view(&self, device: usize) -> View<'_> {
         let mut rows: Vec<&Measurement> = self.measurements.iter().filter(|m| m.device == device).collect();
-        rows.sort_by(|a, b| order(a).cmp(&order(b)));
+        rows.sort_by_key(|m| order(m));
         let usual = axes::usual(rows.iter().map(|m| &m.axes));
         let failures = self.failures.iter().filter(|f| f.device == device).collect();
         View { device: self.devices.get(device), rows, failures, usual }

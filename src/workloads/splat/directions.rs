@@ -28,7 +28,7 @@ pub fn cell_centre(index: u32) -> Vec3A {
     let (axis, [first, second]) = (index / 18, others(index / 18));
     let place = |cell: u32| (cell as f32 - 1.0) * (2.0 / 3.0);
     let mut vector = Vec3A::ZERO;
-    vector[axis as usize] = if index / 9 % 2 == 0 { 1.0 } else { -1.0 };
+    vector[axis as usize] = if (index / 9).is_multiple_of(2) { 1.0 } else { -1.0 };
     vector[first] = place(index / 3 % 3);
     vector[second] = place(index % 3);
     vector

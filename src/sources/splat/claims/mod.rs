@@ -68,7 +68,7 @@ fn finding(claim: &Claim, view: &View, published: &Published) -> Finding {
         let technique = super::axes::value(&f.axes, "technique");
         format!("{} {technique} ({})", f.scene, f.message)
     };
-    let failed: Vec<String> = view.failures.iter().filter(|_| is_timed).map(|f| failed(&f)).collect();
+    let failed: Vec<String> = view.failures.iter().filter(|_| is_timed).map(failed).collect();
     Finding {
         device: view.label().to_owned(),
         without_gpu,

@@ -81,11 +81,14 @@ fn computed(context: &Context) -> Draft {
     draft
 }
 
+/// Size of the image, tile and normals, with bits and bytes of flags, and the scenes that have them.
+type Width = ([String; 3], (f64, f64), Vec<String>);
+
 fn measured(context: &Context, view: &View) -> Draft {
     let columns = vec![Column::new("bits", "", Form::Whole), Column::of("flags", "", "MiB", Form::Time)];
     let mut draft = Draft::new("keys", "Keys of measured rows", columns);
     draft.keys = vec!["size", "tile", "normals", "scenes"];
-    let mut groups: Vec<([String; 3], (f64, f64), Vec<String>)> = Vec::new();
+    let mut groups: Vec<Width> = Vec::new();
     for m in &view.rows {
         let Some(bytes) = m.part("source-flags", "bytes") else { continue };
         let bits = m.metric("key_bits").unwrap_or_else(|| (bytes / 4.0).log2());

@@ -45,10 +45,10 @@ fn place(out: &Path, scene: &str, end: &str) -> PathBuf {
 
 /// True if all pictures of a scene are there, from an earlier session of the run.
 pub fn are_there(out: &Path, scene: &str, cases: &[SplatCase]) -> bool {
-    let is_there = |end: &&str| place(out, scene, end).is_file();
+    let is_there = |end: &str| place(out, scene, end).is_file();
     let has_clusters = cases.iter().any(|case| case.technique.gather.has_clusters());
-    let with_clusters = CLUSTERS.iter().chain([&SIDE_BY_SIDE]);
-    ENDS.iter().all(is_there) && (!has_clusters || with_clusters.into_iter().all(|end| is_there(&end)))
+    let mut with_clusters = CLUSTERS.iter().chain([&SIDE_BY_SIDE]);
+    ENDS.iter().all(|end| is_there(end)) && (!has_clusters || with_clusters.all(|end| is_there(end)))
 }
 
 /// Renders the middle frame of the path: the first case on the device, the first one with clusters, and the first one

@@ -79,7 +79,7 @@ pub fn fill(
                 let Some(share) = terms.share(way.dot(way)) else { continue };
                 flux = flushed((flux * share).extend(0.0)).truncate();
             }
-            let from = direction_index(-Vec3::from(photons.directions[photon].truncate()).to_vec3a());
+            let from = direction_index(-photons.directions[photon].truncate().to_vec3a());
             for (channel, word) in words[3 * from as usize..][..3].iter_mut().enumerate() {
                 *word = match is_fixed {
                     true => word.wrapping_add((flux[channel] * scale + 0.5) as u32),
