@@ -268,7 +268,7 @@ fn quality(view: &View, scenes: &[&SceneKey], end: &str) -> Result<Option<Figure
         let of_others = main_rows(view, scene).first().map(|(m, _)| *m);
         let is_like = |m: &Measurement| {
             let is = |axis: &&str| m.axis(axis).is_empty() || of_others.is_none_or(|o| o.axis(axis) == m.axis(axis));
-            ["paths", "tile"].iter().all(|axis| is(axis))
+            ["paths", "tile"].iter().all(is)
         };
         let mut rows: Vec<&Measurement> = view.usual_rows().filter(|m| m.scene == **scene && is_like(m)).collect();
         rows.sort_by(|a, b| radius(a).total_cmp(&radius(b)));
