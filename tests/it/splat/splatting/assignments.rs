@@ -176,7 +176,7 @@ fn irradiance_is_the_references() {
                     };
                     (0..samples.positions.len()).any(near)
                 });
-                let Some(entry) = strangers.last() else { panic!("{setting:?}: no photon counts") };
+                let Some(entry) = strangers.next_back() else { panic!("{setting:?}: no photon counts") };
                 faulty.entries[entry] = faulty.entries[if entry > first { first } else { first + 1 }];
                 let of = (samples, &grouped.clusters.identifiers[..]);
                 let irradiance = rtbench::workloads::splat::splatting::per_sample::irradiance(

@@ -24,6 +24,9 @@ fn full() -> (Given, Grouped) {
     (given, grouped)
 }
 
+/// Its name, and the change.
+type Planted<T> = (&'static str, fn(&mut T));
+
 #[test]
 fn faults_in_lists_are_found() {
     let (given, grouped) = full();
@@ -35,7 +38,7 @@ fn faults_in_lists_are_found() {
     assert!(passes(&check(&other, Order::Any)), "the order of a list is free");
     assert!(!passes(&check(&other, Order::Sorted)));
 
-    let faults: [(&str, fn(&mut Lists)); 7] = [
+    let faults: [Planted<Lists>; 7] = [
         ("lost", |lists| {
             lists.entries.remove(5);
             lists.offsets.iter_mut().skip(1).for_each(|offset| *offset -= 1);
@@ -89,7 +92,7 @@ fn a_photon_that_moved_is_found() {
 #[test]
 fn faults_in_buckets_are_found() {
     let (given, grouped) = full();
-    let faults: [(&str, fn(&mut Buckets)); 6] = [
+    let faults: [Planted<Buckets>; 6] = [
         ("a bucket off by one", |buckets| {
             let at = buckets.words.iter().position(|&word| word > 0).unwrap();
             let first = at - at % 3;
