@@ -166,7 +166,7 @@ fn irradiance_is_the_references() {
                 let list = (0..faulty.len()).max_by_key(|&cluster| faulty.of(cluster).len()).unwrap();
                 let first = faulty.offsets[list] as usize;
                 let end = faulty.offsets[list + 1] as usize;
-                let strangers = (first..end).filter(|&entry| {
+                let mut strangers = (first..end).filter(|&entry| {
                     let photon = faulty.entries[entry] as usize;
                     let near = |pixel: usize| {
                         let way = samples.positions[pixel].truncate() - photons.positions[photon].truncate();
