@@ -80,7 +80,7 @@ mod tests {
         }
         for (index, sum) in sums.iter().enumerate() {
             let centred = [index / 3 % 3, index % 3].into_iter().filter(|&cell| cell == 1).count();
-            let expected = [0.173, 0.251, 0.399][centred];
+            let expected = [0.1727, 0.2507, 0.4007][centred];
             assert!((sum - expected).abs() < 0.001, "{index}: {sum}");
         }
     }

@@ -99,7 +99,7 @@ fn overflow(what: &str, of: &str, need: u64, capacity: u64, hint: &str) -> Resul
         return Ok(());
     }
     Err(Error::Device(format!(
-        "overflow: {what} need room for {need} {of}, their capacity is {capacity} (give {hint})"
+        "overflow: in a frame {what} need room for {need} {of}, their capacity is {capacity} (give {hint})"
     )))
 }
 

@@ -24,6 +24,9 @@ fn once<'a>(rows: Vec<&'a Measurement>, conditions: &[&str]) -> Vec<&'a Measurem
     found
 }
 
+/// Clusters of a frame at least, for claim 9.
+const FEWEST: f64 = 100.0;
+
 /// Claim 9.
 pub fn load_is_uneven(view: &View) -> Judged {
     let of = |m: &Measurement| {
@@ -40,7 +43,9 @@ pub fn load_is_uneven(view: &View) -> Judged {
             format!("{} photons in the fullest, {mean:.1} in a mean cluster: {times:.1} times", whole(fullest));
         Some(case(view, m, "", outcome, numbers))
     };
-    let rows = usual_but(view, "").into_iter().filter(|m| m.metric("clusters_mean").is_some()).collect();
+    // Of a few clusters none says how uneven many are
+    let has_many = |m: &&Measurement| m.metric("clusters_mean").is_some_and(|clusters| clusters >= FEWEST);
+    let rows = usual_but(view, "").into_iter().filter(has_many).collect();
     let rows = once(rows, &["resolution", "tile", "radius", "paths", "light", "camera_path", "frames"]);
     Judged::by(Basis::Counts, rows.into_iter().filter_map(of).collect())
 }

@@ -102,6 +102,12 @@ impl Receivers<'_> {
                 let square = (point - (min + max) / 2.0).length_squared() / (radius * radius);
                 at_border |= (square - 1.0).abs() < 2.0 * DOUBT;
                 factor = if square < 1.0 { of_kernel(square) } else { 0.0 };
+                if estimate.kernel == EstimateKernel::Epanechnikov && square < 1.0 + DOUBT {
+                    // What the roundings of two positions change of the square, twice for the kernel, twice for 2 cos
+                    let rounding = point.length().max(min.length()).max(max.length()) / f64::from(1 << 22);
+                    let divisor = if estimate.form == Form::Normalised { area } else { 2.0 };
+                    exact.ambiguous += flux * (8.0 * square.sqrt() * rounding / radius / divisor);
+                }
                 if estimate.form == Form::Source && estimate.kernel == EstimateKernel::Epanechnikov {
                     factor /= 2.0;
                 }

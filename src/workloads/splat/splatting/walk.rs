@@ -175,7 +175,9 @@ pub fn target_of(clusters: &Clusters, level: u32, identifier: u32) -> usize {
 
 /// The refusal of buckets at nodes that do not exist.
 pub fn no_nodes(level: u32) -> Error {
-    Error::unsupported(format!("buckets of nodes (level={level}) without a hierarchy"))
+    Error::unsupported(format!(
+        "buckets of nodes (level={level}) without a hierarchy (give --hierarchy masks, or level=5)"
+    ))
 }
 
 /// The centre of a box.
