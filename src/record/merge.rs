@@ -203,8 +203,8 @@ fn check_equal(row: &Row, path: &Path, known: &Row, known_path: &Path) -> Result
     Err(Error::file(path, None, problem, "one of both runs is wrong: measure this case again"))
 }
 
-/// Whole numbers and texts agree if they are equal; fractions within a millionth, since the order of a device's sums may
-/// depend on timing.
+/// Whole numbers and texts agree if they are equal; fractions within a millionth, since the order of a device's sums
+/// may depend on timing.
 fn agree(a: &Value, b: &Value) -> bool {
     match (a.integer().or(b.integer()), a.number(), b.number()) {
         (None, Some(a), Some(b)) => a == b || (a - b).abs() <= 1e-6 * a.abs().max(b.abs()),
