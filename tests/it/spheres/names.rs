@@ -139,7 +139,10 @@ fn mutated_names_of_random_scenes_are_read_or_refused_with_one_line() {
 fn panics_and_errors_of_several_lines_are_noticed() {
     let refused = |problem: &str| Err::<(), _>(rtbench::Error::argument("--renderer", problem, "a hint"));
     assert_eq!(fault("x", |_| refused("wrong")), (false, None));
-    assert!(fault("x", |_| refused("two\nlines")).1.unwrap().contains("exit code 2"));
+    // What a user typed is shown with its line breaks escaped, what a device says is not
+    assert_eq!(fault("x", |_| refused("two\nlines")), (false, None));
+    let two_lines = || rtbench::Error::Device("two\nlines".into());
+    assert!(fault("x", |_| Err::<(), _>(two_lines())).1.unwrap().contains("exit code 2"));
     assert!(fault("x", |_| Err::<(), _>(rtbench::Error::Interrupted)).1.unwrap().contains("exit code 130"));
     assert!(fault::<()>("x", |_| panic!("planted")).1.unwrap().contains("a panic"));
     assert_eq!(fault("x", |_| Ok(())), (true, None));

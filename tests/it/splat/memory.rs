@@ -35,7 +35,7 @@ fn frames_of_a_technique() {
     let camera = camera_of(&scene);
     let light = light_at(&scene, [0.45, 0.6, 0.55], Vec3::ONE);
     let lit = lit(scene, &[light]);
-    let (size, setting) = (Size { width: 480, height: 270 }, ClusterSetting { tile: 8, ..Default::default() });
+    let (size, setting) = (Size { width: 960, height: 540 }, ClusterSetting { tile: 16, ..Default::default() });
     let technique = Technique::parse(&technique).unwrap();
     let layout = KeyLayout::new(&setting, size, camera.field_of_view, (lit.near(), lit.far())).unwrap();
     let estimate = technique.estimate(lit.diagonal() * 0.05);
