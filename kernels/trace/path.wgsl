@@ -140,12 +140,15 @@ fn start_path(place: vec2<u32>) -> Path {
 // Traces the segment of rays of this kind, adds its light, and makes the mirrored ray the next one. Whole work-groups
 // call it together. False if nothing of the work-group was hit.
 fn follow(kind: u32, path: ptr<function, Path>) -> bool {
-    // Find the nearest hit
-    let ray = (*path).ray;
     if ((*path).alive) {
         begin_ray(kind);
     }
-    let triangle_ref = nearest_hit(ray, (*path).alive);
+    return follow_hit(kind, path, nearest_hit((*path).ray, (*path).alive));
+}
+
+// The same for a segment whose nearest hit is known.
+fn follow_hit(kind: u32, path: ptr<function, Path>, triangle_ref: u32) -> bool {
+    let ray = (*path).ray;
 
     // Make it a surface; a ray that misses shows the background and is done
     var surface: Surface;

@@ -1,4 +1,4 @@
-// Output of the counting kernels: 124 bytes a pixel.
+// Output of the counting kernels: 136 bytes a pixel.
 
 struct CountedPixel {
     triangle: u32,

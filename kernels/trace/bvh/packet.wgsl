@@ -81,6 +81,7 @@ fn start_packet() -> u32 {
 fn visit_inner(ray: Ray, node: u32, t: f32, alive: bool) -> u32 {
     if (alive) {
         count_inner();
+        add_boxes(2u);
     }
     let left = read_node(node);
     let right = read_node(node + 1u);

@@ -42,6 +42,7 @@ fn pop(t: f32, walk: ptr<function, Walk>) {
 fn walk_to_leaf(ray: Ray, t: f32, walk: ptr<function, Walk>) {
     while (!is_leaf((*walk).node)) {
         count_inner();
+        add_boxes(2u);
         let left = read_node((*walk).node);
         let right = read_node((*walk).node + 1u);
         let l = ray_box(ray, left.lo, left.hi);

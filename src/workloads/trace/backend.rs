@@ -32,7 +32,7 @@ pub struct Pixel {
     pub rgba: u32,
 }
 
-/// The output of a counting kernel for a pixel (31 words).
+/// The output of a counting kernel for a pixel (34 words).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct CountedPixel {

@@ -45,6 +45,12 @@ macro_rules! counters {
             $($(#[doc = $meaning])+ fn $event(&mut self);)+
             /// What was counted.
             fn total(&self) -> Counters;
+
+            /// So many tests of nodes' boxes.
+            #[inline(always)]
+            fn box_tests(&mut self, tests: u32) {
+                (0..tests).for_each(|_| self.box_test());
+            }
         }
 
         impl Count for CountOff {
@@ -124,4 +130,7 @@ counters! {
     fallback: fallbacks,
     /// A visit of an inner node of a BIH that enters neither child.
     skip: skips,
+    /// A test of a node's box against the ray, in a tree of boxes; those of empty children and of the whole scene are
+    /// not counted.
+    box_test: boxes,
 }

@@ -143,11 +143,21 @@ impl<'a> Frame<'a> {
     /// Traces the segments of rays of this kind, adds their light, and makes the mirrored rays the next ones. False if
     /// nothing was hit.
     pub fn follow<T: Traverse, C: Count>(&self, traversal: &T, kind: usize, paths: &mut Paths<C>) -> bool {
-        let Paths { rays, alive, colour, weight, first, counters } = paths;
-
-        // Find the nearest hit
+        let Paths { rays, alive, counters, .. } = paths;
         bits(*alive).for_each(|lane| counters[kind][lane].ray());
         let triangle_refs = traversal.nearest_hits(rays, *alive, &mut counters[kind]);
+        self.follow_hits(traversal, kind, paths, &triangle_refs)
+    }
+
+    /// The same for segments whose nearest hits are known.
+    pub fn follow_hits<T: Traverse, C: Count>(
+        &self,
+        traversal: &T,
+        kind: usize,
+        paths: &mut Paths<C>,
+        triangle_refs: &Lanes<u32>,
+    ) -> bool {
+        let Paths { rays, alive, colour, weight, first, counters } = paths;
 
         // Make it a surface; a ray that misses shows the background and is done
         let mut surfaces: Lanes<Option<Surface>> = [None; GROUP];

@@ -110,6 +110,7 @@ impl<'a> Bvh<'a> {
         let mut votes = 0; // for the right child first
         for lane in bits(alive) {
             counters[lane].inner();
+            counters[lane].box_tests(2);
             let l = ray_box(&rays[lane], left_min, left_max);
             let r = ray_box(&rays[lane], right_min, right_max);
             let t = best[lane].t;

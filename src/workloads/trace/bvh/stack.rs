@@ -127,6 +127,7 @@ impl<'a> BvhStack<'a> {
     fn walk_to_leaf<C: Count>(&self, ray: &Ray, t: f32, mut reference: u32, stack: &mut Stack, count: &mut C) -> u32 {
         while reference & LEAF == 0 {
             count.inner();
+            count.box_tests(2);
             let [left, right] = &self.pairs[reference as usize / 2];
             let (min, max) = left.corners();
             let l = ray_box(ray, min, max);
