@@ -32,7 +32,7 @@ fn check(source: &Source) -> Result<naga::Module, String> {
     };
     let module = naga::front::wgsl::parse_str(&source.text)
         .map_err(|e| format!("{}: {}", at(e.location(&source.text)), e.message()))?;
-    Validator::new(ValidationFlags::all(), Capabilities::empty())
+    Validator::new(ValidationFlags::all(), Capabilities::RAY_QUERY)
         .validate(&module)
         .map_err(|e| format!("{}: {:?}", at(e.location(&source.text)), e.into_inner()))?;
     Ok(module)
@@ -43,8 +43,8 @@ fn every_variant_is_valid() {
     let kernels = kernels::all();
     assert_eq!(
         kernels.len(),
-        (kernels::methods().len() * 8 + 4) * 4,
-        "six render and two trace entries, three passes instead of one where they are staged, timed and counting, two \
+        (kernels::methods().len() * 12 + 4) * 4,
+        "ten render and two trace entries, three passes instead of one where they are staged, timed and counting, two \
          kinds of driver, buffers and textures"
     );
     for algorithm in algorithms() {
@@ -163,7 +163,8 @@ fn struct_layouts_agree() {
             columns,
             height,
             shadow_reach,
-            part
+            part,
+            ambient_reach
         ]
     );
     same_layout!(module, "Grid", GridUniform, [bounds_min, cell_size, bounds_max, resolution, octants]);
@@ -171,7 +172,12 @@ fn struct_layouts_agree() {
     same_layout!(module, "Vertex", Vertex, [position, normal]);
     same_layout!(module, "Material", Material, [ambient, reflectivity, diffuse, exponent, specular]);
     same_layout!(module, "Light", Light, [position, colour]);
-    same_layout!(module, "Counters", Counters, [rays, inner, leaves, tests, pops, restarts, ropes, fallbacks, skips, boxes]);
+    same_layout!(
+        module,
+        "Counters",
+        Counters,
+        [rays, inner, leaves, tests, pops, restarts, ropes, fallbacks, skips, boxes]
+    );
     let (span, members) = layout(module, "CountedPixel");
     assert_eq!(span as usize, size_of::<CountedPixel>());
     assert_eq!(members.iter().find(|m| m.0 == "t").unwrap().1 as usize, offset_of!(CountedPixel, t));

@@ -4,8 +4,10 @@ use crate::device::{DeviceInfo, DeviceType, Feature, Features};
 use crate::error::{Error, Result};
 
 /// Optional features that an opened device has wherever its adapter offers them. Others are never requested: a driver
-/// may compile the same kernel otherwise with them. Half precision only adds a type, which few kernels use.
-pub const WANTED: Features = Features::of(&[Feature::Timestamps, Feature::Half, Feature::FloatAtomics]);
+/// may compile the same kernel otherwise with them. Half precision and ray queries only add types, which few kernels
+/// use.
+pub const WANTED: Features =
+    Features::of(&[Feature::Timestamps, Feature::Half, Feature::FloatAtomics, Feature::RayQuery]);
 
 /// A Vulkan adapter that was listed and can be opened.
 pub struct Adapter {

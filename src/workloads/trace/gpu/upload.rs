@@ -1,7 +1,7 @@
 //! Scene and structure on a device, and the ledger of their bytes.
 
-use crate::device::VulkanDevice;
-use crate::device::vulkan::{Buffer, ReadBuffer, Texel, Texture};
+use crate::device::vulkan::{AccelerationStructure, Buffer, ReadBuffer, Texel, Texture};
+use crate::device::{Feature, VulkanDevice};
 use crate::error::Result;
 use crate::scene::Scene;
 use crate::workloads::trace::method::Fetch;
@@ -18,6 +18,8 @@ pub(super) struct Uploaded {
     pub materials: Buffer,
     pub triangle_materials: Buffer,
     pub structure: Buffer,
+    /// The driver's own structure, for traversals that query it.
+    pub driver_tree: Option<AccelerationStructure>,
     /// Bytes of vertices, materials and the triangles' materials.
     pub geometry_bytes: u64,
     /// Bytes of nodes (or cells) and triangle references.
@@ -60,6 +62,12 @@ impl Uploaded {
             materials: storage(device, "the materials", bytes(&scene.materials))?,
             triangle_materials: storage(device, "the triangles' materials", bytes(&triangle_materials))?,
             structure: device.uniform("the structure's constants", &uniform)?,
+            driver_tree: method
+                .traversal
+                .needs
+                .has(Feature::RayQuery)
+                .then(|| driver_tree(device, scene, structure))
+                .transpose()?,
             geometry_bytes: size(bytes(&scene.vertices))
                 + size(bytes(&scene.materials))
                 + size(bytes(&triangle_materials)),
@@ -68,6 +76,13 @@ impl Uploaded {
         device.check()?;
         Ok(uploaded)
     }
+}
+
+/// The driver's structure over the triangle references, whose order it gets.
+fn driver_tree(device: &VulkanDevice, scene: &Scene, structure: &dyn Structure) -> Result<AccelerationStructure> {
+    let positions: Vec<[f32; 3]> = scene.vertices.iter().map(|vertex| vertex.position_a().to_array()).collect();
+    let indices: Vec<[u32; 3]> = structure.triangle_refs().iter().map(|triangle_ref| triangle_ref.vertices).collect();
+    device.acceleration_structure("the driver's structure", &positions, &indices)
 }
 
 fn storage(device: &VulkanDevice, what: &str, contents: &[u8]) -> Result<Buffer> {
