@@ -1,7 +1,7 @@
 //! The names of `--structure`, in the order of tables.
 
 use super::algorithm::Algorithm;
-use super::{bih, brute, bvh, grid, kdtree, query};
+use super::{bih, brute, bvh, grid, kdtree, query, wide};
 
 static ALGORITHMS: &[&Algorithm] = &[
     &grid::dda::GRID,
@@ -14,6 +14,9 @@ static ALGORITHMS: &[&Algorithm] = &[
     &grid::packet::GRID_PACKET,
     &query::driver::QUERY,
     &brute::scan::BRUTE,
+    &wide::pair_stack::BVH_QUANTISED,
+    &wide::stack::BVH4,
+    &wide::stack::BVH8,
 ];
 
 /// All algorithms.
