@@ -20,7 +20,7 @@ use rtbench::workloads::trace::{Selection, Structure};
 use std::sync::Arc;
 
 /// Every builder, with options that lead through other code.
-pub const SELECTIONS: [&str; 42] = [
+pub const SELECTIONS: [&str; 45] = [
     "grid",
     "grid:factor=1",
     "grid:x=5",
@@ -63,6 +63,9 @@ pub const SELECTIONS: [&str; 42] = [
     "bih:max_leaf=1",
     "bih:max_leaf=15",
     "brute",
+    "bvh-stackless",
+    "bvh-stackless:build=spatial,max_leaf=1,alpha=0",
+    "query",
 ];
 
 pub fn build(selection: &str, scene: &Scene, threads: usize) -> Arc<dyn Structure> {

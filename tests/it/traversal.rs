@@ -83,7 +83,7 @@ fn names() -> Vec<&'static str> {
 }
 
 /// Ways to walk a structure other than each one's own.
-const OTHERS: [&str; 46] = [
+const OTHERS: [&str; 52] = [
     "kdtree:search=restart",
     "kdtree:search=pushdown",
     "kdtree:stack=1",
@@ -132,6 +132,12 @@ const OTHERS: [&str; 46] = [
     "bvh:fetch=textures",
     "bvh-stack:fetch=textures",
     "bih:fetch=textures",
+    "bvh-stack:loop=if-if",
+    "bvh-stack:loop=speculative",
+    "bvh-stack:loop=speculative,cull=off",
+    "bvh-stackless:search=trail",
+    "bvh-stackless:build=spatial,max_leaf=1,alpha=0",
+    "bvh-stackless:build=spatial,max_leaf=1,alpha=0,search=trail",
 ];
 
 pub fn all_names() -> Vec<&'static str> {

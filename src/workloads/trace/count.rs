@@ -131,7 +131,7 @@ counters! {
     pop: pops,
     /// A restart at (or below) the root.
     restart: restarts,
-    /// A rope is followed from a leaf to its neighbour.
+    /// A rope is followed from a leaf to its neighbour, or a link from a node to its parent.
     rope: ropes,
     /// A search by ropes is given up, and the ray is finished by the search with a trail.
     fallback: fallbacks,

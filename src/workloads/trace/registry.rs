@@ -9,14 +9,15 @@ static ALGORITHMS: &[&Algorithm] = &[
     &bvh::packet::BVH,
     &bvh::stack::BVH_STACK,
     &bvh::stack::PLOC_STACK,
+    &wide::pair_stack::BVH_QUANTISED,
+    &wide::stack::BVH4,
+    &wide::stack::BVH8,
+    &bvh::stackless::BVH_STACKLESS,
     &bih::stack::BIH,
     &grid::coop::GRID_COOP,
     &grid::packet::GRID_PACKET,
     &query::driver::QUERY,
     &brute::scan::BRUTE,
-    &wide::pair_stack::BVH_QUANTISED,
-    &wide::stack::BVH4,
-    &wide::stack::BVH8,
 ];
 
 /// All algorithms.
