@@ -171,7 +171,12 @@ fn struct_layouts_agree() {
     same_layout!(module, "Vertex", Vertex, [position, normal]);
     same_layout!(module, "Material", Material, [ambient, reflectivity, diffuse, exponent, specular]);
     same_layout!(module, "Light", Light, [position, colour]);
-    same_layout!(module, "Counters", Counters, [rays, inner, leaves, tests, pops, restarts, ropes, fallbacks, skips, boxes]);
+    same_layout!(
+        module,
+        "Counters",
+        Counters,
+        [rays, inner, leaves, tests, pops, restarts, ropes, fallbacks, skips, boxes]
+    );
     let (span, members) = layout(module, "CountedPixel");
     assert_eq!(span as usize, size_of::<CountedPixel>());
     assert_eq!(members.iter().find(|m| m.0 == "t").unwrap().1 as usize, offset_of!(CountedPixel, t));

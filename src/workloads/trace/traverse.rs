@@ -3,7 +3,7 @@
 
 use crate::math::{MISS, Ray, T_MAX, Vertex};
 use crate::workloads::trace::TriangleRef;
-use crate::workloads::trace::count::Count;
+use crate::workloads::trace::count::{Count, CountOff, Counters};
 use crate::workloads::trace::intersect::{TriangleHit, TriangleTest};
 use glam::Vec3A;
 
@@ -27,15 +27,53 @@ pub trait Traverse: Sync {
         alive: u64,
         counters: &mut Lanes<C>,
     ) -> Lanes<u32>;
+}
 
+/// What rays search for.
+#[derive(Clone, Copy, Debug)]
+pub struct Search {
+    /// Any hit instead of the nearest one.
+    pub any: bool,
+    /// Hits are nearer than this.
+    pub limit: f32,
+}
+
+/// A [`Traverse`] behind a pointer: frames are compiled once, and not once for each traversal.
+pub trait Traverser: Sync {
+    /// Counts nothing.
+    fn uncounted(&self, search: Search, rays: &Lanes<Ray>, alive: u64) -> Lanes<u32>;
+
+    /// Adds to `counters`.
+    fn counted(&self, search: Search, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<Counters>) -> Lanes<u32>;
+}
+
+impl<T: Traverse> Traverser for T {
+    fn uncounted(&self, Search { any, limit }: Search, rays: &Lanes<Ray>, alive: u64) -> Lanes<u32> {
+        let counters = &mut [CountOff; GROUP];
+        match any {
+            false => self.traverse::<false, CountOff>(rays, limit, alive, counters),
+            true => self.traverse::<true, CountOff>(rays, limit, alive, counters),
+        }
+    }
+
+    fn counted(&self, search: Search, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<Counters>) -> Lanes<u32> {
+        let Search { any, limit } = search;
+        match any {
+            false => self.traverse::<false, Counters>(rays, limit, alive, counters),
+            true => self.traverse::<true, Counters>(rays, limit, alive, counters),
+        }
+    }
+}
+
+impl dyn Traverser + '_ {
     /// The triangle reference of each ray's nearest hit, or [`MISS`].
-    fn nearest_hits<C: Count>(&self, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<C>) -> Lanes<u32> {
-        self.traverse::<false, C>(rays, T_MAX, alive, counters)
+    pub fn nearest_hits<C: Count>(&self, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<C>) -> Lanes<u32> {
+        C::traverse(self, Search { any: false, limit: T_MAX }, rays, alive, counters)
     }
 
     /// One bit for each ray that hits anything at a distance below `limit`.
-    fn any_hits<C: Count>(&self, rays: &Lanes<Ray>, limit: f32, alive: u64, counters: &mut Lanes<C>) -> u64 {
-        let found = self.traverse::<true, C>(rays, limit, alive, counters);
+    pub fn any_hits<C: Count>(&self, rays: &Lanes<Ray>, limit: f32, alive: u64, counters: &mut Lanes<C>) -> u64 {
+        let found = C::traverse(self, Search { any: true, limit }, rays, alive, counters);
         set_of(bits(alive).filter(|&lane| found[lane] != MISS))
     }
 }
