@@ -160,6 +160,7 @@ paths that have not changed.",
         ("thesis-lite", include_str!("../../../presets/sweep/thesis-lite.toml")),
         ("rt2", include_str!("../../../presets/sweep/rt2.toml")),
         ("rt2-lite", include_str!("../../../presets/sweep/rt2-lite.toml")),
+        ("structures", include_str!("../../../presets/sweep/structures.toml")),
     ],
 };
 
