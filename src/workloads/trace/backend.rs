@@ -5,6 +5,7 @@ use crate::camera::View;
 pub use crate::device::{DeviceInfo, DeviceType, FrameTime, Interrupted, KernelInfo, POISON};
 use crate::error::{Error, Result};
 use crate::math::{Aabb, Hit, MISS, T_MAX};
+use crate::record::row::Metric;
 use crate::scene::Scene;
 use crate::scene::placement::{exponent_of, power_of_two};
 pub use crate::workloads::size::Size;
@@ -239,4 +240,9 @@ pub trait Prepared {
     /// Bytes allocated on the device for geometry (vertices, materials, lights) and for the structure (nodes and
     /// triangle references), in this order.
     fn allocated(&self) -> (u64, u64);
+
+    /// What else is known of the structure once it is on the device.
+    fn artifact_metrics(&self) -> Vec<Metric> {
+        Vec::new()
+    }
 }

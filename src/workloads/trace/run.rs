@@ -124,7 +124,9 @@ impl<'a> TraceRun<'a> {
 
 impl Run for TraceRun<'_> {
     fn artifact(&self) -> Option<Artifact> {
-        self.input.artifact_of(&self.selection, Some(self.tracer.allocated()))
+        let mut artifact = self.input.artifact_of(&self.selection, Some(self.tracer.allocated()))?;
+        artifact.metrics.extend(self.tracer.artifact_metrics());
+        Some(artifact)
     }
 
     fn kernels(&self, case: &Case) -> Result<Vec<KernelInfo>> {

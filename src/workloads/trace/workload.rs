@@ -6,7 +6,7 @@ use super::input::TraceInput;
 use super::rays::{self, Config};
 use super::record::{RAY_TYPES, WORKLOAD, variant_of};
 use super::tracer::Decorate;
-use super::{Selection, artifacts};
+use super::{Selection, artifacts, build};
 use crate::camera::CameraPath;
 use crate::device::Source;
 use crate::error::{Error, Result};
@@ -224,7 +224,9 @@ impl Workload for Trace {
     }
 
     fn kernels(&self) -> Result<Vec<(String, Source)>> {
-        kernels::defaults()
+        let mut all = kernels::defaults()?;
+        all.extend(build::gpu::kernels()?);
+        Ok(all)
     }
 
     fn machine_metrics(&self) -> &'static [&'static str] {

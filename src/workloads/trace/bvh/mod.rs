@@ -40,11 +40,19 @@ static TOP_DOWN: Builder = Builder {
     purpose: |_| "",
     build: options::build,
     estimate: Some(estimate),
+    on_device: Some(options::build_on_device),
 };
 
 /// PLOC with reinsertion, by obvhs.
-static PLOC: Builder =
-    Builder { name: "ploc", options: PLOC_OPTIONS, parallel: true, purpose: |_| "", build: build_ploc, estimate: None };
+static PLOC: Builder = Builder {
+    name: "ploc",
+    options: PLOC_OPTIONS,
+    parallel: true,
+    purpose: |_| "",
+    build: build_ploc,
+    estimate: None,
+    on_device: None,
+};
 
 const PLOC_OPTIONS: &[OptionInfo] =
     &[OptionInfo::new(Axis::Build, "preset", "medium", "obvhs's preset", Kind::Word(&ploc::PRESETS))];

@@ -9,6 +9,7 @@ use crate::device::VulkanDevice;
 use crate::device::vulkan::{Bindings, Buffer, Pipeline, PipelineDescription, Resource};
 use crate::error::{Error, Result};
 use crate::math::{Hit, T_MAX};
+use crate::record::row::Metric;
 use crate::scene::Scene;
 use crate::workloads::trace::backend::*;
 use crate::workloads::trace::cpu::cannot_walk;
@@ -186,6 +187,10 @@ impl Prepared for GpuPrepared<'_> {
             Some(_) => stages(self.method, config).iter().map(|stage| stage.0).collect(),
             None => Vec::new(),
         }
+    }
+
+    fn artifact_metrics(&self) -> Vec<Metric> {
+        vec![Metric::new("upload_ms", self.uploaded.structure_time.as_secs_f64() * 1e3)]
     }
 
     fn allocated(&self) -> (u64, u64) {

@@ -7,6 +7,7 @@ use crate::scene::Scene;
 use crate::workloads::trace::method::Fetch;
 use crate::workloads::trace::{Method, Structure};
 use bytemuck::Pod;
+use std::time::Duration;
 
 /// One scene and one structure on a device.
 pub(super) struct Uploaded {
@@ -22,6 +23,8 @@ pub(super) struct Uploaded {
     pub geometry_bytes: u64,
     /// Bytes of nodes (or cells) and triangle references.
     pub structure_bytes: u64,
+    /// Until these were on the device, by the host's clock.
+    pub structure_time: Duration,
 }
 
 const TOO_LARGE: &str = "use a smaller scene, a structure with fewer references, or another device";
@@ -46,16 +49,18 @@ impl Uploaded {
             Fetch::Textures => true,
         };
         let structure_bytes = size(&nodes) + size(bytes(triangle_refs));
-        let [vertices, triangle_refs, nodes] = inputs.map(|(what, contents, texel)| match textures {
+        let upload = |(what, contents, texel): (&str, &[u8], Texel)| match textures {
             true => texture(device, what, contents, texel).map(ReadBuffer::Texture),
             false => storage(device, what, contents).map(ReadBuffer::Buffer),
-        });
+        };
+        let [vertices, triangle_refs, nodes] = inputs.map(|input| device.time_upload(|| upload(input)));
+        let (vertices, (triangle_refs, refs_time), (nodes, nodes_time)) = (vertices?.0, triangle_refs?, nodes?);
         let mut uniform = structure.uniform();
         uniform.resize(uniform.len().next_multiple_of(16).max(16), 0);
         let uploaded = Uploaded {
-            vertices: vertices?,
-            triangle_refs: triangle_refs?,
-            nodes: nodes?,
+            vertices,
+            triangle_refs,
+            nodes,
             textures,
             materials: storage(device, "the materials", bytes(&scene.materials))?,
             triangle_materials: storage(device, "the triangles' materials", bytes(&triangle_materials))?,
@@ -64,6 +69,7 @@ impl Uploaded {
                 + size(bytes(&scene.materials))
                 + size(bytes(&triangle_materials)),
             structure_bytes,
+            structure_time: refs_time + nodes_time,
         };
         device.check()?;
         Ok(uploaded)
