@@ -33,6 +33,11 @@ pub trait Traverse: Sync {
         self.traverse::<false, C>(rays, T_MAX, alive, counters)
     }
 
+    /// The same for the primary rays of 8 x 8 pixels in Morton order.
+    fn primary_hits<C: Count>(&self, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<C>) -> Lanes<u32> {
+        self.nearest_hits(rays, alive, counters)
+    }
+
     /// One bit for each ray that hits anything at a distance below `limit`.
     fn any_hits<C: Count>(&self, rays: &Lanes<Ray>, limit: f32, alive: u64, counters: &mut Lanes<C>) -> u64 {
         let found = self.traverse::<true, C>(rays, limit, alive, counters);

@@ -46,6 +46,7 @@ pub static STACK: Traversal = Traversal {
         let bvh = input.structure()?;
         Ok(input.with(BvhStack::new(input.triangles(), bvh, parameters.flag("CULL"), Widening::of(&input, bvh))))
     }),
+    leaf_order: true,
     ..Traversal::INDEPENDENT
 };
 
