@@ -143,6 +143,14 @@ impl Parameters {
         all
     }
 
+    /// These and one more, eight at most.
+    #[must_use]
+    pub fn and(mut self, name: &'static str, value: Parameter) -> Parameters {
+        let free = self.0.iter_mut().find(|place| place.is_none()).expect("at most eight parameters");
+        *free = Some((name, value));
+        self
+    }
+
     /// Names and values, in the order in which they were given.
     pub fn iter(&self) -> impl Iterator<Item = (&'static str, Parameter)> {
         self.0.into_iter().flatten()

@@ -37,6 +37,7 @@ mod structure;
 pub mod tracer;
 pub mod traverse;
 pub mod verify;
+pub mod wide;
 mod workload;
 
 pub use crate::device::CpuDevice as CpuBackend;

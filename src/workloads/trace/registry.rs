@@ -1,7 +1,7 @@
 //! The names of `--structure`, in the order of tables.
 
 use super::algorithm::Algorithm;
-use super::{bih, brute, bvh, grid, kdtree};
+use super::{bih, brute, bvh, grid, kdtree, wide};
 
 static ALGORITHMS: &[&Algorithm] = &[
     &grid::dda::GRID,
@@ -13,6 +13,9 @@ static ALGORITHMS: &[&Algorithm] = &[
     &grid::coop::GRID_COOP,
     &grid::packet::GRID_PACKET,
     &brute::scan::BRUTE,
+    &wide::pair_stack::BVH_QUANTISED,
+    &wide::stack::BVH4,
+    &wide::stack::BVH8,
 ];
 
 /// All algorithms.

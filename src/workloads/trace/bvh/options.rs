@@ -2,10 +2,9 @@
 
 use super::spatial::SpatialConfig;
 use super::spatial_bins::MAX_SPATIAL_BINS;
-use super::{DEPTH_LIMIT, build, sweep};
+use super::{Bvh, DEPTH_LIMIT, build, build_ploc, ploc, sweep};
 use crate::error::Result;
 use crate::scene::Scene;
-use crate::workloads::trace::algorithm::Made;
 use crate::workloads::trace::common::sah::CostModel;
 use crate::workloads::trace::options::{Axis, Kind, OptionInfo};
 use crate::workloads::trace::selection::Selection;
@@ -13,24 +12,28 @@ use crate::workloads::trace::selection::Selection;
 const BINNED: &str = "binned";
 const SWEEP: &str = "sweep";
 const SPATIAL: &str = "spatial";
+const PLOC: &str = "ploc";
 
-pub(super) const OPTIONS: &[OptionInfo] = &[
+pub(in crate::workloads::trace) const OPTIONS: &[OptionInfo] = &[
     OptionInfo::new(
         Axis::Build,
         "build",
         BINNED,
-        "splits between bins of centroids, between any two triangles (sweep), or also through triangles (spatial)",
-        Kind::Word(&[BINNED, SWEEP, SPATIAL]),
+        "splits between bins of centroids, between any two triangles (sweep), or also through triangles (spatial); or \
+         obvhs's clustering (ploc)",
+        Kind::Word(&[BINNED, SWEEP, SPATIAL, PLOC]),
     ),
     OptionInfo::new(Axis::Build, "bins", "16", "bins per axis", Kind::Count(2, 32)).idle_if(is_not_binned),
-    OptionInfo::new(Axis::Build, "max_leaf", "4", "split until at most so many triangles", Kind::Count(1, 15)),
+    OptionInfo::new(Axis::Build, "max_leaf", "4", "split until at most so many triangles", Kind::Count(1, 15))
+        .idle_if(has_preset),
     OptionInfo::new(
         Axis::Build,
         "kt",
         "inf",
         "cost of a traversal step: with it, nodes within max_leaf are split, too, where that is cheaper; inf: never",
         Kind::Number(0.0, f64::INFINITY),
-    ),
+    )
+    .idle_if(has_preset),
     OptionInfo::new(Axis::Build, "ki", "1", "cost of a triangle test", Kind::Number(1e-6, 1e6)).idle_if(no_costs),
     OptionInfo::new(
         Axis::Build,
@@ -47,14 +50,15 @@ pub(super) const OPTIONS: &[OptionInfo] = &[
         "axes on which splits are looked for: all, or the longest of the node's box",
         Kind::Word(&["all", "longest"]),
     )
-    .idle_if(is_binned),
+    .idle_if(has_all_axes),
     OptionInfo::new(
         Axis::Build,
         "max_depth",
         "60",
         "greatest depth, near which nodes are halved; stacks are sized by the depth of the tree that was built",
         Kind::Count(1, DEPTH_LIMIT),
-    ),
+    )
+    .idle_if(has_preset),
     OptionInfo::new(
         Axis::Build,
         "alpha",
@@ -87,14 +91,31 @@ pub(super) const OPTIONS: &[OptionInfo] = &[
         Kind::Word(&["above", "below"]),
     )
     .idle_if(is_not_spatial),
+    PRESET.idle_if(has_no_preset),
 ];
+
+pub(super) const PRESET: OptionInfo =
+    OptionInfo::new(Axis::Build, "preset", "medium", "obvhs's preset", Kind::Word(&ploc::PRESETS));
+
+fn has_preset(s: &Selection) -> Option<String> {
+    (s.value("build") == PLOC).then(|| format!("build={PLOC} is set by preset"))
+}
+
+fn has_no_preset(s: &Selection) -> Option<String> {
+    let build = s.value("build");
+    (build != PLOC).then(|| format!("build={build} has no presets"))
+}
 
 fn no_costs(s: &Selection) -> Option<String> {
     (s.value("kt") == "inf").then(|| "costs are compared only with kt".to_owned())
 }
 
-fn is_binned(s: &Selection) -> Option<String> {
-    (s.value("build") == BINNED).then(|| format!("build={BINNED} has bins on all axes"))
+fn has_all_axes(s: &Selection) -> Option<String> {
+    match s.value("build") {
+        BINNED => Some(format!("build={BINNED} has bins on all axes")),
+        PLOC => Some(format!("build={PLOC} looks for no splits")),
+        _ => None,
+    }
 }
 
 fn is_not_binned(s: &Selection) -> Option<String> {
@@ -113,12 +134,16 @@ fn is_not_spatial(s: &Selection) -> Option<String> {
     (build != SPATIAL).then(|| format!("build={build} has no spatial splits"))
 }
 
-pub(super) fn build(s: &Selection, scene: &Scene) -> Result<Made> {
+/// The BVH that the options describe; with a note where it is another one.
+pub(in crate::workloads::trace) fn build(s: &Selection, scene: &Scene) -> Result<(Bvh, String)> {
+    if s.value("build") == PLOC {
+        return build_ploc(s, scene);
+    }
     let cost = CostModel { traversal: s.number("kt"), intersection: s.number("ki") };
     let (max_leaf, max_depth) = (s.size("max_leaf"), s.size("max_depth") as u32);
     if s.value("build") == BINNED {
         let config = build::Config { bins: s.size("bins"), max_leaf, cost, max_depth };
-        return Ok(Made::of(build::build(scene, &config)?));
+        return Ok((build::build(scene, &config)?, String::new()));
     }
     let spatial = (s.value("build") == SPATIAL).then(|| SpatialConfig {
         alpha: s.number("alpha") as f32,
@@ -129,5 +154,5 @@ pub(super) fn build(s: &Selection, scene: &Scene) -> Result<Made> {
     let sorting = if s.value("sorting") == "once" { sweep::Sorting::Once } else { sweep::Sorting::EveryNode };
     let longest_axis = s.value("axes") == "longest";
     let config = sweep::Config { max_leaf, cost, max_depth, sorting, longest_axis, spatial };
-    Ok(Made::of(sweep::build(scene, &config)?))
+    Ok((sweep::build(scene, &config)?, String::new()))
 }
