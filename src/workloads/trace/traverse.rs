@@ -71,6 +71,11 @@ impl dyn Traverser + '_ {
         C::traverse(self, Search { any: false, limit: T_MAX }, rays, alive, counters)
     }
 
+    /// The same for the primary rays of 8 x 8 pixels in Morton order.
+    fn primary_hits<C: Count>(&self, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<C>) -> Lanes<u32> {
+        self.nearest_hits(rays, alive, counters)
+    }
+
     /// One bit for each ray that hits anything at a distance below `limit`.
     pub fn any_hits<C: Count>(&self, rays: &Lanes<Ray>, limit: f32, alive: u64, counters: &mut Lanes<C>) -> u64 {
         let found = C::traverse(self, Search { any: true, limit }, rays, alive, counters);

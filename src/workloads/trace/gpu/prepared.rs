@@ -67,8 +67,9 @@ impl<'a> GpuPrepared<'a> {
 
     fn kernel_of(&self, entry: Entry) -> Kernel {
         let software_threads = self.device.info().software_threads();
-        let textures = self.uploaded.textures;
-        Kernel { entry, method: self.method, stack_size: self.stack_size, software_threads, textures }
+        let Uploaded { textures, .. } = self.uploaded;
+        let leaf_order = self.uploaded.corners.is_some();
+        Kernel { entry, method: self.method, stack_size: self.stack_size, software_threads, textures, leaf_order }
     }
 
     pub(super) fn compiled(&self, entry: Entry) -> Result<Arc<Pipeline>> {
@@ -84,7 +85,7 @@ impl<'a> GpuPrepared<'a> {
     }
 
     /// Binds scene and structure, `first` as number 0, and the kernel's other buffers.
-    pub(super) fn bind(&self, pipeline: &Pipeline, first: Resource, others: &[(u32, &Buffer)]) -> Bindings {
+    pub(super) fn bind(&self, pipeline: &Pipeline, first: Resource, others: &[(u32, Resource)]) -> Bindings {
         let scene = &self.uploaded;
         let mut resources = vec![
             (0, first),
@@ -93,7 +94,8 @@ impl<'a> GpuPrepared<'a> {
             (6, Resource::from(&scene.nodes)),
             (7, Resource::from(&scene.structure)),
         ];
-        resources.extend(others.iter().map(|&(number, buffer)| (number, Resource::from(buffer))));
+        resources.extend(scene.corners.as_ref().map(|corners| (13, Resource::from(corners))));
+        resources.extend(others);
         self.device.bind(pipeline, &resources)
     }
 
@@ -101,7 +103,12 @@ impl<'a> GpuPrepared<'a> {
     pub(super) fn kernel_info(&self, entry: Entry) -> Result<KernelInfo> {
         let kernel = self.kernel_of(entry);
         let hash = kernel.assemble().map_err(Error::Device)?.hash();
-        let fetch = if kernel.textures { "textures" } else { "buffers" };
+        let fetch = match (kernel.textures, kernel.leaf_order) {
+            (false, false) => "buffers",
+            (false, true) => "buffers+leaf-order",
+            (true, false) => "textures",
+            (true, true) => "textures+leaf-order",
+        };
         let checked = self.device.options().checked || self.method.checked;
         Ok(KernelInfo { hash, fetch: fetch.to_owned(), checked })
     }
