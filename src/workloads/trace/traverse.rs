@@ -27,15 +27,22 @@ pub trait Traverse: Sync {
         alive: u64,
         counters: &mut Lanes<C>,
     ) -> Lanes<u32>;
+
+    /// The nearest hits of the primary rays of 8 x 8 pixels in Morton order.
+    fn primary_hits<C: Count>(&self, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<C>) -> Lanes<u32> {
+        self.traverse::<false, C>(rays, T_MAX, alive, counters)
+    }
 }
 
 /// What rays search for.
 #[derive(Clone, Copy, Debug)]
-pub struct Search {
-    /// Any hit instead of the nearest one.
-    pub any: bool,
-    /// Hits are nearer than this.
-    pub limit: f32,
+pub enum Search {
+    /// The nearest hit of the primary rays of 8 x 8 pixels in Morton order.
+    Primary,
+    /// The nearest hit.
+    Nearest,
+    /// Any hit before this distance.
+    Any(f32),
 }
 
 /// A [`Traverse`] behind a pointer: frames are compiled once, and not once for each traversal.
@@ -48,37 +55,43 @@ pub trait Traverser: Sync {
 }
 
 impl<T: Traverse> Traverser for T {
-    fn uncounted(&self, Search { any, limit }: Search, rays: &Lanes<Ray>, alive: u64) -> Lanes<u32> {
-        let counters = &mut [CountOff; GROUP];
-        match any {
-            false => self.traverse::<false, CountOff>(rays, limit, alive, counters),
-            true => self.traverse::<true, CountOff>(rays, limit, alive, counters),
-        }
+    fn uncounted(&self, search: Search, rays: &Lanes<Ray>, alive: u64) -> Lanes<u32> {
+        find(self, search, rays, alive, &mut [CountOff; GROUP])
     }
 
     fn counted(&self, search: Search, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<Counters>) -> Lanes<u32> {
-        let Search { any, limit } = search;
-        match any {
-            false => self.traverse::<false, Counters>(rays, limit, alive, counters),
-            true => self.traverse::<true, Counters>(rays, limit, alive, counters),
-        }
+        find(self, search, rays, alive, counters)
+    }
+}
+
+fn find<T: Traverse, C: Count>(
+    traversal: &T,
+    search: Search,
+    rays: &Lanes<Ray>,
+    alive: u64,
+    counters: &mut Lanes<C>,
+) -> Lanes<u32> {
+    match search {
+        Search::Primary => traversal.primary_hits(rays, alive, counters),
+        Search::Nearest => traversal.traverse::<false, C>(rays, T_MAX, alive, counters),
+        Search::Any(limit) => traversal.traverse::<true, C>(rays, limit, alive, counters),
     }
 }
 
 impl dyn Traverser + '_ {
     /// The triangle reference of each ray's nearest hit, or [`MISS`].
     pub fn nearest_hits<C: Count>(&self, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<C>) -> Lanes<u32> {
-        C::traverse(self, Search { any: false, limit: T_MAX }, rays, alive, counters)
+        C::traverse(self, Search::Nearest, rays, alive, counters)
     }
 
     /// The same for the primary rays of 8 x 8 pixels in Morton order.
-    fn primary_hits<C: Count>(&self, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<C>) -> Lanes<u32> {
-        self.nearest_hits(rays, alive, counters)
+    pub fn primary_hits<C: Count>(&self, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<C>) -> Lanes<u32> {
+        C::traverse(self, Search::Primary, rays, alive, counters)
     }
 
     /// One bit for each ray that hits anything at a distance below `limit`.
     pub fn any_hits<C: Count>(&self, rays: &Lanes<Ray>, limit: f32, alive: u64, counters: &mut Lanes<C>) -> u64 {
-        let found = C::traverse(self, Search { any: true, limit }, rays, alive, counters);
+        let found = C::traverse(self, Search::Any(limit), rays, alive, counters);
         set_of(bits(alive).filter(|&lane| found[lane] != MISS))
     }
 }

@@ -1,12 +1,12 @@
 //! A scene and a structure on a device with one traversal: images, counting, given rays. Timing is in [`super::path`].
 
-use super::kernels::{Entry, Kernel, stack_size};
+use super::kernels::{DRIVER_TREE, Entry, Kernel, stack_size};
 use super::path::LastFrame;
 use super::rendering::{Part, entries_of, stages};
 use super::upload::Uploaded;
 use crate::camera::View;
 use crate::device::VulkanDevice;
-use crate::device::vulkan::{Bindings, Buffer, Pipeline, PipelineDescription, Resource};
+use crate::device::vulkan::{AccelerationStructure, Bindings, Buffer, Pipeline, PipelineDescription, Resource};
 use crate::error::{Error, Result};
 use crate::math::{Hit, T_MAX};
 use crate::record::row::Metric;
@@ -16,6 +16,7 @@ use crate::workloads::trace::cpu::cannot_walk;
 use crate::workloads::trace::{Method, Structure};
 use std::collections::HashMap;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// Rays per dispatch of [`Prepared::cast`].
 const TRACE_RAYS: usize = 1 << 20;
@@ -95,6 +96,8 @@ impl<'a> GpuPrepared<'a> {
             (7, Resource::from(&scene.structure)),
         ];
         resources.extend(scene.corners.as_ref().map(|corners| (13, Resource::from(corners))));
+        let driver_tree = scene.driver_tree.as_ref();
+        resources.extend(driver_tree.map(|tree| (DRIVER_TREE, Resource::AccelerationStructure(tree))));
         resources.extend(others);
         self.device.bind(pipeline, &resources)
     }
@@ -197,7 +200,10 @@ impl Prepared for GpuPrepared<'_> {
     }
 
     fn artifact_metrics(&self) -> Vec<Metric> {
-        vec![Metric::new("upload_ms", self.uploaded.structure_time.as_secs_f64() * 1e3)]
+        let ms = |time: Duration| time.as_secs_f64() * 1e3;
+        let driver_tree = self.uploaded.driver_tree.as_ref();
+        let of_driver = driver_tree.map(|tree| Metric::new("driver_build_ms", ms(tree.build_time())));
+        of_driver.into_iter().chain([Metric::new("upload_ms", ms(self.uploaded.structure_time))]).collect()
     }
 
     fn allocated(&self) -> (u64, u64) {
