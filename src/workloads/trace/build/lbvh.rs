@@ -1,5 +1,5 @@
 //! Linear BVH: the binary radix tree over Morton codes, whose small subtrees are leaves. Twin of
-//! `kernels/trace/build/{leaves,refit}.wgsl`.
+//! `kernels/trace/build/{list,nodes,refit,top}.wgsl`.
 //!
 //! T. Karras: Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees, 2012. Ours: boxes go up level
 //! by level instead of by atomic counters alone, since a pass of a device is sure to see only what earlier passes wrote;

@@ -1,4 +1,4 @@
-//! The binary radix tree over sorted Morton codes. Twin of `kernels/trace/build/range.wgsl`.
+//! The binary radix tree over sorted Morton codes. Twin of `kernels/trace/build/{radix_tree,flags,nodes}.wgsl`.
 //!
 //! T. Karras: Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees, 2012, section 4. Equal codes
 //! are told apart by their places.

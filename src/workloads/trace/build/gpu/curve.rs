@@ -18,7 +18,7 @@ const CODES: Stage = Stage("codes");
 const SORT: Stage = Stage("sort");
 
 /// Bits of a Morton code.
-pub(super) const CODE_BITS: u32 = 30;
+const CODE_BITS: u32 = 30;
 
 /// Bits of a digit that is sorted by on a software driver: few passes.
 const SOFTWARE_BITS: u32 = 10;

@@ -26,12 +26,16 @@ pub(super) enum Kernel {
     Count { bits: u32 },
     /// Sorts by a digit of so many bits.
     Scatter { bits: u32, is_first: bool },
-    /// Ranges of inner nodes.
-    Range,
-    /// Leaves, and the nodes that inner nodes are.
-    Leaves,
+    /// Which inner nodes of a radix tree are kept.
+    Flags,
+    /// The list of these.
+    List,
+    /// Their ranges and leaves.
+    Nodes,
     /// Boxes of a level of inner nodes.
     Refit,
+    /// Boxes of the levels above.
+    Top,
     /// Triangles as clusters.
     Clusters,
     /// Partners of clusters.
@@ -55,7 +59,7 @@ impl Kernel {
         let mut all: Vec<Kernel> = [false, true].map(|textures| Boxes { textures }).into();
         all.extend([Cells, Codes, Count { bits }]);
         all.extend([true, false].map(|is_first| Scatter { bits, is_first }));
-        all.extend([Range, Leaves, Refit, Clusters, Search, Choose, Merge, Number, Descend]);
+        all.extend([Flags, List, Nodes, Refit, Top, Clusters, Search, Choose, Merge, Number, Descend]);
         all
     }
 
@@ -66,9 +70,11 @@ impl Kernel {
             Kernel::Codes => "trace/build/codes.wgsl",
             Kernel::Count { .. } => "trace/build/count.wgsl",
             Kernel::Scatter { .. } => "trace/build/scatter.wgsl",
-            Kernel::Range => "trace/build/range.wgsl",
-            Kernel::Leaves => "trace/build/leaves.wgsl",
+            Kernel::Flags => "trace/build/flags.wgsl",
+            Kernel::List => "trace/build/list.wgsl",
+            Kernel::Nodes => "trace/build/nodes.wgsl",
             Kernel::Refit => "trace/build/refit.wgsl",
+            Kernel::Top => "trace/build/top.wgsl",
             Kernel::Clusters => "trace/build/clusters.wgsl",
             Kernel::Search => "trace/build/search.wgsl",
             Kernel::Choose => "trace/build/choose.wgsl",
@@ -99,6 +105,7 @@ impl Kernel {
         constants.float("SMALLEST_EXTENT", SMALLEST_EXTENT);
         constants.float("MIN_POSITIVE", f32::MIN_POSITIVE);
         constants.float("T_MAX", math::T_MAX);
+        constants.unsigned("DEPTH", super::lbvh::LEVELS + 1);
         let mut slots = Vec::new();
         match self {
             Kernel::Boxes { textures } => {
@@ -120,19 +127,20 @@ impl Kernel {
         let texels = |textures| ReadBuffer::kind(textures, Texel::Bytes16);
         let kinds: &[BindingKind] = match self {
             Kernel::Boxes { textures } => &[Uniform, texels(textures), texels(textures), ReadWrite, ReadWrite],
-            Kernel::Cells | Kernel::Count { .. } | Kernel::Search | Kernel::Number => &[Uniform, Read, ReadWrite],
+            Kernel::Cells | Kernel::Count { .. } | Kernel::Search | Kernel::Number | Kernel::Flags | Kernel::List => {
+                &[Uniform, Read, ReadWrite]
+            }
             Kernel::Codes | Kernel::Clusters => &[Uniform, Read, Read, ReadWrite],
             Kernel::Scatter { is_first: true, .. } => &[Uniform, Read, ReadWrite, ReadWrite, ReadWrite],
             Kernel::Scatter { .. } => &[Uniform, Read, ReadWrite, ReadWrite, ReadWrite, Read],
-            Kernel::Range | Kernel::Choose => &[Uniform, Read, ReadWrite, ReadWrite],
+            Kernel::Choose => &[Uniform, Read, ReadWrite, ReadWrite],
             Kernel::Merge => &[Uniform, Read, Read, Read, Read, ReadWrite, ReadWrite, ReadWrite],
             Kernel::Descend => &[Uniform, Read, Read, Read, Read, Read, ReadWrite, ReadWrite, ReadWrite, ReadWrite],
-            Kernel::Leaves => &[Uniform, Read, Read, ReadWrite, ReadWrite, ReadWrite, ReadWrite, Read, Read, ReadWrite],
-            // The numbers 7 and 8 are those of leaves
-            Kernel::Refit => {
-                let numbers = [0, 1, 3, 4, 5, 6, 9];
-                let kind = |number| [Uniform, Read].get(number as usize).copied().unwrap_or(ReadWrite);
-                return numbers.map(|number| Binding::new(number, kind(number))).into();
+            Kernel::Nodes => {
+                &[Uniform, Read, Read, ReadWrite, ReadWrite, ReadWrite, ReadWrite, ReadWrite, Read, Read, Read]
+            }
+            Kernel::Refit | Kernel::Top => {
+                &[Uniform, Read, ReadWrite, ReadWrite, ReadWrite, ReadWrite, ReadWrite, ReadWrite]
             }
         };
         (0..).zip(kinds).map(|(number, &kind)| Binding::new(number, kind)).collect()

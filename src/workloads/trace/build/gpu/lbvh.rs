@@ -1,7 +1,7 @@
 //! The linear BVH on a device.
 
 use super::BuildTimes;
-use super::curve::{CODE_BITS, Curve};
+use super::curve::Curve;
 use super::kernels::Kernel;
 use super::passes::{Job, Passes};
 use crate::device::vulkan::Resource;
@@ -14,6 +14,10 @@ use crate::workloads::trace::bvh::{Bvh, BvhNode};
 
 const TREE: Stage = Stage("tree");
 const REFIT: Stage = Stage("refit");
+
+/// Levels of inner nodes, from the bottom up, that get their boxes in a pass of their own. Of a usual tree hardly any
+/// node is above them.
+pub(super) const LEVELS: u32 = 14;
 
 /// Builds the tree of [`crate::workloads::trace::build::lbvh::build`] on a device.
 ///
@@ -33,37 +37,39 @@ pub fn build(
     let mut times = BuildTimes::default();
     let mut passes = Passes::new(device);
     let curve = Curve::new(&mut passes, device, scene, &prims, &mut times)?;
-    let bytes = u64::from(curve.count) * 4;
-    let ranges = device.zeroed("the ranges of nodes", bytes * 2)?;
-    let ranks = device.zeroed("the nodes of the tree", bytes)?;
-    let (groups, job) = curve.shape.over(curve.count);
-    let job = Job { max_leaf, ..job };
-    passes.add(TREE, Kernel::Range, groups, job, &[&curve.keys, &ranges, &ranks].map(Resource::from))?;
+    let inner = curve.count - 1;
+    let ranks = device.zeroed("the ranks of nodes", u64::from(curve.count) * 4)?;
+    let kept_nodes = device.zeroed("the nodes of the tree", u64::from(inner) * 4)?;
+    let (groups, job) = curve.shape.over(inner);
+    let job = Job { max_leaf, leaves: curve.count, ..job };
+    passes.add(TREE, Kernel::Flags, groups, job, &[&curve.keys, &ranks].map(Resource::from))?;
+    // With one word more, which stays zero, each flag is the difference of two sums
     passes.scan(TREE, Scan::in_place(device, scan::Options::default(), &ranks, curve.count)?);
+    passes.add(TREE, Kernel::List, groups, job, &[&ranks, &kept_nodes].map(Resource::from))?;
     times.add(passes.run(interrupted)?);
     let kept = passes.total()?;
 
     // How many nodes there are decides how much memory they take
-    let words = u64::from(kept) * 4;
+    let list = |what: &str| device.zeroed(what, u64::from(kept) * 4);
     let nodes = device.zeroed("the nodes", (2 + 2 * u64::from(kept)) * size_of::<BvhNode>() as u64)?;
-    let slots = device.zeroed("the places of nodes", words)?;
-    let waiting = device.zeroed("the children without boxes", words)?;
-    let lists = [device.zeroed("a list of nodes", words)?, device.zeroed("a list of nodes", words)?];
-    // Codes differ in one of their bits, equal codes in one of their places' bits
-    let levels = CODE_BITS + (u32::BITS - curve.count.leading_zeros());
-    let lengths = device.zeroed("the lengths of lists", u64::from(levels + 1) * 4)?;
+    let (slots, waiting, heights) = (list("the places of nodes")?, list("the children")?, list("the heights")?);
+    let lists = [list("a list of nodes")?, list("a list of nodes")?];
+    let lengths = device.zeroed("the lengths of lists", u64::from(LEVELS + 2) * 4)?;
     let mut passes = Passes::new(device);
-    let bound = [&curve.boxes, &curve.order, &nodes, &slots, &waiting, &lengths, &ranges, &ranks, &lists[0]];
-    passes.add(REFIT, Kernel::Leaves, groups, job, &bound.map(Resource::from))?;
     let (groups, job) = curve.shape.over(kept);
-    for level in 0..levels {
+    let job = Job { max_leaf, leaves: curve.count, ..job };
+    let Curve { keys, boxes, order, .. } = &curve;
+    let bound = [keys, boxes, &nodes, &slots, &waiting, &lengths, &lists[0], order, &ranks, &kept_nodes];
+    passes.add(TREE, Kernel::Nodes, groups, job, &bound.map(Resource::from))?;
+    for level in 0..=LEVELS {
         let [list, next] = [level, level + 1].map(|level| &lists[level as usize % 2]);
-        let bound = [list, &nodes, &slots, &waiting, &lengths, next].map(Resource::from);
-        passes.add(REFIT, Kernel::Refit, groups, Job { level, ..job }, &bound)?;
+        let bound = [list, &heights, &nodes, &slots, &waiting, &lengths, next].map(Resource::from);
+        let (kernel, groups) = if level < LEVELS { (Kernel::Refit, groups) } else { (Kernel::Top, 1) };
+        passes.add(REFIT, kernel, groups, Job { level, ..job }, &bound)?;
     }
     times.add(passes.run(interrupted)?);
     let nodes: Vec<BvhNode> = device.read(&nodes, 2 + 2 * kept as usize)?;
-    let lengths: Vec<u32> = device.read(&lengths, levels as usize)?;
-    let depth = lengths.iter().take_while(|&&length| length > 0).count() as u32;
+    let lengths: Vec<u32> = device.read(&lengths, LEVELS as usize + 2)?;
+    let depth = lengths[LEVELS as usize + 1];
     curve.tree(scene, &prims, bounds, &curve.order, nodes, depth).map(|bvh| (bvh, times))
 }
