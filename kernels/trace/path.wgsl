@@ -169,16 +169,18 @@ fn follow(kind: u32, path: ptr<function, Path>) -> bool {
 fn follow_hit(kind: u32, path: ptr<function, Path>, triangle_ref: u32) -> bool {
     let ray = (*path).ray;
     let surface = surface_of(kind, path, triangle_ref);
+    var ambient: vec4<f32>; // colour and reflectivity
+    if ((*path).alive) {
+        ambient = read_ambient(surface.material);
+        (*path).colour += ambient.xyz * (*path).weight;
+    }
     if (!group_any((*path).alive)) {
         return false;
-    }
-    if ((*path).alive) {
-        (*path).colour += materials[surface.material].ambient * (*path).weight;
     }
 
     // Add the light of every lamp that is seen from there
     for (var i = 0u; i < frame.light_count; i += 1u) {
-        let light = lights[frame.first_light + i];
+        let light = read_light(frame.first_light + i);
         var lit = (*path).alive;
         if (SHADOWS) {
             // Between light and point, of which one is at distance 0 and the other at distance 1
@@ -198,9 +200,8 @@ fn follow_hit(kind: u32, path: ptr<function, Path>, triangle_ref: u32) -> bool {
 
     // Go on in the mirror
     if (BOUNCES > 0u && (*path).alive) {
-        let reflectivity = materials[surface.material].reflectivity;
-        (*path).alive = reflectivity > 0.0;
-        (*path).weight = (*path).weight * reflectivity;
+        (*path).alive = ambient.w > 0.0;
+        (*path).weight = (*path).weight * ambient.w;
         (*path).ray = reflected_ray(surface, ray.direction);
     }
     return true;

@@ -38,14 +38,20 @@ fn check(source: &Source) -> Result<naga::Module, String> {
     Ok(module)
 }
 
+/// Kernels of a method.
+fn variants(method: &Method) -> usize {
+    let staged = if method.is_staged(2) { 4 } else { 0 };
+    (12 + staged) * 4 * if method.traversal.leaf_order { 2 } else { 1 }
+}
+
 #[test]
 fn every_variant_is_valid() {
     let kernels = kernels::all();
     assert_eq!(
         kernels.len(),
-        (kernels::methods().len() * 12 + 4) * 4,
+        kernels::methods().iter().map(variants).sum::<usize>(),
         "ten render and two trace entries, three passes instead of one where they are staged, timed and counting, two \
-         kinds of driver, buffers and textures"
+         kinds of driver, buffers and textures, both layouts of triangles where a traversal takes both"
     );
     for algorithm in algorithms() {
         let method = method(algorithm.name);
@@ -92,6 +98,7 @@ fn a_broken_kernel_is_located() {
         stack_size: 32,
         software_threads: 2,
         textures: false,
+        leaf_order: false,
     };
     let mut source = assemble(&kernel);
     let (_, geom) = kernels::FILES.iter().find(|(name, _)| *name == "lib/geom.wgsl").unwrap();
@@ -138,6 +145,7 @@ fn struct_layouts_agree() {
             stack_size: 32,
             software_threads: 0,
             textures: false,
+            leaf_order: false,
         };
         check(&assemble(&kernel)).unwrap()
     };
@@ -188,6 +196,7 @@ fn struct_layouts_agree() {
         stack_size: 32,
         software_threads: 0,
         textures: false,
+        leaf_order: false,
     };
     let module = &check(&assemble(&staged)).unwrap();
     same_layout!(module, "Waiting", WaitingPath, [origin, pixel, direction, weight, colour]);
@@ -207,6 +216,7 @@ fn struct_layouts_agree() {
         stack_size: 8,
         software_threads: 0,
         textures: false,
+        leaf_order: false,
     };
     let module = &check(&assemble(&kernel)).unwrap();
     same_layout!(module, "GivenRay", TraceRay, [origin, direction]);

@@ -16,7 +16,7 @@ fn shade_primary(place: vec2<u32>, path: ptr<function, Path>, triangle_ref: u32)
     (*path).ray = ray_above(surface, place, 0u);
     let seen = surface_of(DIFFUSE, path, nearest_hit((*path).ray, (*path).alive));
     if ((*path).alive) {
-        let material = materials[seen.material];
+        let material = read_material(seen.material);
         let cosine = max(-dot3(seen.normal, (*path).ray.direction), 0.0);
         (*path).colour = material.ambient + material.diffuse * cosine;
     }

@@ -164,7 +164,19 @@ pub const COMMON_OPTIONS: &[OptionInfo] = &[
         "read scene and structure from storage buffers or textures (auto: buffers, on software drivers textures)",
         Kind::Word(&["auto", "buffers", "textures"]),
     ),
+    OptionInfo::new(
+        Axis::Device,
+        "triangles",
+        "auto",
+        "read corners by the indices of vertices, or in leaf order from a copy (auto: on software drivers the copy)",
+        Kind::Word(&["auto", "indexed", "leaf-order"]),
+    )
+    .idle_if(reads_indexed),
 ];
+
+fn reads_indexed(s: &Selection) -> Option<String> {
+    (!s.method().traversal.leaf_order).then(|| format!("{} reads all triangles by their vertices", s.name()))
+}
 
 fn has_own_test(s: &Selection) -> Option<String> {
     let is_known = s.method().traversal.agreement != Agreement::HitsOnly;
@@ -172,6 +184,9 @@ fn has_own_test(s: &Selection) -> Option<String> {
 }
 
 fn goes_together(s: &Selection) -> Option<String> {
+    if s.method().traversal.packets.is_some() {
+        return Some(format!("frames of {} have a pass for primary rays and one for all others", s.name()));
+    }
     s.method().traversal.cooperative.then(|| format!("the rays of a work-group of {} go together", s.name()))
 }
 

@@ -45,6 +45,7 @@ pub static STACK: Traversal = Traversal {
     parameters: |s| loops::with_form(parameters(s), Form::of(s)),
     slots: loops::slots,
     twin: Some(loops::twin),
+    leaf_order: true,
     ..Traversal::INDEPENDENT
 };
 

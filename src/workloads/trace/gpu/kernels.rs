@@ -47,6 +47,15 @@ pub enum Entry {
         /// Which pass.
         pass: StagedPass,
     },
+    /// A pass of a frame of packets: `trace/subgroup/hits.wgsl`, `trace/subgroup/shade.wgsl`.
+    Packets {
+        /// Ray configuration.
+        config: Config,
+        /// With counters, or timed.
+        counting: bool,
+        /// Which pass.
+        pass: PacketPass,
+    },
     /// `trace/given.wgsl`.
     Trace {
         /// Any hit instead of the nearest one.
@@ -63,6 +72,15 @@ pub enum StagedPass {
     Bounce,
     /// Reflected rays for the last list.
     LastBounce,
+}
+
+/// A pass of a frame of packets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum PacketPass {
+    /// Nearest hits of primary rays.
+    Hits,
+    /// Surfaces, light and secondary rays.
+    Shade,
 }
 
 impl StagedPass {
@@ -86,6 +104,8 @@ pub struct Kernel {
     pub software_threads: u32,
     /// Scene and structure are in textures instead of storage buffers.
     pub textures: bool,
+    /// Corners of triangles are read in leaf order.
+    pub leaf_order: bool,
 }
 
 impl Entry {
@@ -94,6 +114,9 @@ impl Entry {
         match self {
             Entry::Render { config, counting } => format!("{config:?}{}", if counting { " counting" } else { "" }),
             Entry::Staged { config, counting, pass } => {
+                format!("{config:?} {pass:?}{}", if counting { " counting" } else { "" })
+            }
+            Entry::Packets { config, counting, pass } => {
                 format!("{config:?} {pass:?}{}", if counting { " counting" } else { "" })
             }
             Entry::Trace { any_hit } => format!("trace{}", if any_hit { " any hit" } else { "" }),
@@ -132,6 +155,8 @@ impl Kernel {
             Entry::Render { counting, .. } => ("trace/render.wgsl", counting),
             Entry::Staged { counting, pass: StagedPass::Primary, .. } => ("trace/staged/primary.wgsl", counting),
             Entry::Staged { counting, .. } => ("trace/staged/bounce.wgsl", counting),
+            Entry::Packets { counting, pass: PacketPass::Hits, .. } => ("trace/subgroup/hits.wgsl", counting),
+            Entry::Packets { counting, pass: PacketPass::Shade, .. } => ("trace/subgroup/shade.wgsl", counting),
             Entry::Trace { .. } => ("trace/given.wgsl", false),
         };
         let intersect = match self.method.intersect {
@@ -141,23 +166,31 @@ impl Kernel {
         let mut slots = vec![
             ("intersect", intersect),
             ("memory", if self.textures { "trace/textures.wgsl" } else { "trace/buffers.wgsl" }),
+            (
+                "triangles",
+                if self.leaf_order { "trace/triangles_leaf_order.wgsl" } else { "trace/triangles_indexed.wgsl" },
+            ),
             ("traversal", self.method.traversal.kernel),
             ("counting", if counting { COUNT_ON } else { COUNT_OFF }),
             ("store", if counting { "trace/store_counted.wgsl" } else { "trace/store_timed.wgsl" }),
         ];
-        if let Entry::Render { config, .. } = self.entry {
+        if let Entry::Render { config, .. } | Entry::Packets { config, .. } = self.entry {
             slots.push(("secondary", secondary(config)));
         }
-        if let Entry::Staged { counting, pass, .. } = self.entry {
+        if let Entry::Staged { pass, .. } = self.entry {
             let is_last = pass == StagedPass::LastBounce;
-            slots.extend([
-                ("append", if is_last { "trace/staged/end.wgsl" } else { "trace/staged/append.wgsl" }),
-                (
-                    "update",
-                    if counting { "trace/staged/update_counted.wgsl" } else { "trace/staged/update_timed.wgsl" },
-                ),
-            ]);
+            slots.push(("append", if is_last { "trace/staged/end.wgsl" } else { "trace/staged/append.wgsl" }));
         }
+        let chosen = |counted, timed| if counting { counted } else { timed };
+        let packet_test = match self.method.intersect {
+            TriangleTest::Watertight => "trace/subgroup/watertight.wgsl",
+            TriangleTest::MollerTrumbore => "trace/subgroup/moller_trumbore.wgsl",
+        };
+        slots.extend([
+            ("update", chosen("trace/staged/update_counted.wgsl", "trace/staged/update_timed.wgsl")),
+            ("count_rows", chosen("trace/subgroup/count_on.wgsl", "trace/subgroup/count_off.wgsl")),
+            ("packet_test", packet_test),
+        ]);
         slots.extend((self.method.traversal.slots)(&self.method.parameters));
         assemble(files(), entry, &slots, self.constants())
     }
@@ -165,12 +198,12 @@ impl Kernel {
     /// The bindings of the entry file; those that a traversal does not use are bound as well.
     pub(super) fn layout(&self) -> Vec<Binding> {
         let input = |texel| ReadBuffer::kind(self.textures, texel);
-        let render = matches!(self.entry, Entry::Render { .. } | Entry::Staged { .. });
+        let render = !matches!(self.entry, Entry::Trace { .. });
         let mut layout = vec![
             Binding::new(0, if render { BindingKind::MovingUniform } else { BindingKind::Uniform }),
             Binding::new(1, input(Texel::Bytes16)),
             Binding::new(2, input(Texel::Bytes16)),
-            Binding::new(3, BindingKind::Read),
+            Binding::new(3, if render { input(Texel::Bytes16) } else { BindingKind::Read }),
             Binding::new(6, input(self.method.traversal.structure.node_texel)),
             Binding::new(7, BindingKind::Uniform),
             Binding::new(8, BindingKind::ReadWrite),
@@ -179,7 +212,10 @@ impl Kernel {
             layout.push(Binding::new(DRIVER_TREE, BindingKind::AccelerationStructure));
         }
         if render {
-            layout.extend([Binding::new(4, BindingKind::Read), Binding::new(5, BindingKind::Read)]);
+            layout.extend([4, 5].map(|number| Binding::new(number, input(Texel::Bytes16))));
+        }
+        if self.leaf_order {
+            layout.push(Binding::new(13, input(Texel::Bytes16)));
         }
         if let Entry::Staged { pass, .. } = self.entry {
             if pass != StagedPass::LastBounce {
@@ -215,7 +251,7 @@ impl Kernel {
             }
         }
         match self.entry {
-            Entry::Render { config, .. } | Entry::Staged { config, .. } => {
+            Entry::Render { config, .. } | Entry::Staged { config, .. } | Entry::Packets { config, .. } => {
                 if config == Config::AO {
                     constants.unsigned("AMBIENT_RAYS", AMBIENT_RAYS);
                 }
@@ -259,7 +295,10 @@ pub fn methods() -> Vec<Method> {
 fn entries(method: Method) -> Vec<Entry> {
     let mut entries: Vec<Entry> = [false, true].map(|any_hit| Entry::Trace { any_hit }).to_vec();
     for config in Config::ALL {
-        if method.is_staged(config.bounces()) {
+        if method.traversal.packets.is_some() {
+            let of = |pass| [false, true].map(|counting| Entry::Packets { config, counting, pass });
+            entries.extend([PacketPass::Hits, PacketPass::Shade].into_iter().flat_map(of));
+        } else if method.is_staged(config.bounces()) {
             let passes = StagedPass::all(config).into_iter();
             let of = |pass| [false, true].map(|counting| Entry::Staged { config, counting, pass });
             entries.extend(passes.flat_map(of));
@@ -285,7 +324,8 @@ pub fn defaults() -> Result<Vec<(String, Source)>> {
         }
         methods.push(method);
         for entry in entries(method) {
-            let kernel = Kernel { entry, method, stack_size: 32, software_threads: 0, textures: false };
+            let kernel =
+                Kernel { entry, method, stack_size: 32, software_threads: 0, textures: false, leaf_order: false };
             let source = kernel.assemble().map_err(Error::Device)?;
             defaults.push((format!("{} {}", algorithm.name, entry.label()), source));
         }
@@ -298,9 +338,19 @@ pub fn all() -> Vec<Kernel> {
     let mut all = Vec::new();
     for method in methods() {
         for entry in entries(method) {
-            for textures in [false, true] {
-                let kernel = |software_threads| Kernel { entry, method, stack_size: 32, software_threads, textures };
-                all.extend([0, 2].map(kernel));
+            for leaf_order in [false, true].into_iter().filter(|leaf_order| !leaf_order || method.traversal.leaf_order)
+            {
+                for textures in [false, true] {
+                    let kernel = |software_threads| Kernel {
+                        entry,
+                        method,
+                        stack_size: 32,
+                        software_threads,
+                        textures,
+                        leaf_order,
+                    };
+                    all.extend([0, 2].map(kernel));
+                }
             }
         }
     }

@@ -46,6 +46,20 @@ pub struct WaitingPath {
 /// path.
 pub const LENGTH: [u32; 4] = [0, 1, 1, 0];
 
+/// Three texels of `kernels/trace/triangles_leaf_order.wgsl`: the corners of a triangle reference.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+#[allow(missing_docs)]
+pub struct LeafTriangle {
+    pub a: Vec3,
+    /// Index in the scene.
+    pub triangle: u32,
+    pub b: Vec3,
+    pub material: u32,
+    pub c: Vec3,
+    pub pad: u32,
+}
+
 /// `Job` of `kernels/trace/given.wgsl`.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]

@@ -26,6 +26,7 @@ static BUILDER: Builder = Builder {
         Ok(Made { structure: Arc::new(LinkedBvh::new(bvh)), note })
     },
     estimate: Some(super::estimate),
+    on_device: None,
 };
 
 /// The tree of `bvh`, walked without a stack.
