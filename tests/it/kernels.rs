@@ -32,7 +32,7 @@ fn check(source: &Source) -> Result<naga::Module, String> {
     };
     let module = naga::front::wgsl::parse_str(&source.text)
         .map_err(|e| format!("{}: {}", at(e.location(&source.text)), e.message()))?;
-    Validator::new(ValidationFlags::all(), Capabilities::empty())
+    Validator::new(ValidationFlags::all(), Capabilities::RAY_QUERY | Capabilities::SUBGROUP)
         .validate(&module)
         .map_err(|e| format!("{}: {:?}", at(e.location(&source.text)), e.into_inner()))?;
     Ok(module)
@@ -41,7 +41,8 @@ fn check(source: &Source) -> Result<naga::Module, String> {
 /// Kernels of a method.
 fn variants(method: &Method) -> usize {
     let staged = if method.is_staged(2) { 4 } else { 0 };
-    (8 + staged) * 4 * if method.traversal.leaf_order { 2 } else { 1 }
+    let packets = if method.traversal.packets.is_some() { 10 } else { 0 };
+    (12 + staged + packets) * 4 * if method.traversal.leaf_order { 2 } else { 1 }
 }
 
 #[test]
@@ -50,7 +51,7 @@ fn every_variant_is_valid() {
     assert_eq!(
         kernels.len(),
         kernels::methods().iter().map(variants).sum::<usize>(),
-        "six render and two trace entries, three passes instead of one where they are staged, timed and counting, two \
+        "ten render and two trace entries, three passes instead of one where they are staged, timed and counting, two \
          kinds of driver, buffers and textures, both layouts of triangles where a traversal takes both"
     );
     for algorithm in algorithms() {
@@ -171,7 +172,8 @@ fn struct_layouts_agree() {
             columns,
             height,
             shadow_reach,
-            part
+            part,
+            ambient_reach
         ]
     );
     same_layout!(module, "Grid", GridUniform, [bounds_min, cell_size, bounds_max, resolution, octants]);

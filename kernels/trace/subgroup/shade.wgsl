@@ -1,8 +1,9 @@
-// Second pass of a frame of packets: the surfaces that primary rays hit, their light, and secondary rays, one for each
-// invocation. One invocation per pixel, as in trace/render.wgsl. Twin: src/workloads/trace/render.rs.
+// Second pass of a frame of packets: what follows from the nearest hits of primary rays, with secondary rays one by
+// one. One invocation per pixel, as in trace/render.wgsl. Twin: src/workloads/trace/render.rs.
 
 //!include trace/path.wgsl
 //!slot update
+//!slot secondary
 
 @compute @workgroup_size(GROUP_SIZE)
 fn main(
@@ -17,9 +18,6 @@ fn main(
     let pixel = pixel_index(place);
     var path = start_path(place);
     resume(pixel);
-    var goes_on = follow_hit(PRIMARY, &path, pixels[pixel].triangle);
-    for (var bounce = 0u; bounce < BOUNCES && goes_on && path.alive; bounce += 1u) {
-        goes_on = follow(REFLECTED, &path);
-    }
+    shade_primary(place, &path, pixels[pixel].triangle);
     store(pixel, path.first_triangle, path.first_t, rgba8(path.colour));
 }

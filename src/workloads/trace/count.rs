@@ -6,6 +6,12 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 
+/// Names of the ray types, in the order of counters: those of the thesis of 2009, then incoherent ones.
+pub const RAY_TYPES: [&str; 5] = ["primary", "shadow", "reflected", "ambient", "diffuse"];
+
+/// One value per ray type, in the order of [`RAY_TYPES`].
+pub type ByRayType<T> = [T; RAY_TYPES.len()];
+
 /// Makes everything that has one item per counter. A counter is `event: field`; the traversal reports events.
 macro_rules! counters {
     ($($(#[doc = $meaning:literal])+ $event:ident: $field:ident,)+) => {
@@ -98,7 +104,8 @@ pub fn wgsl(counting: bool) -> String {
     if counting {
         line(format_args!("struct Counters {{"));
         LIST.iter().for_each(|(_, field)| line(format_args!("    {field}: u32,")));
-        line(format_args!("}}\nvar<private> counters: array<Counters, 3>; // of this invocation, by ray type"));
+        line(format_args!("}}\nconst RAY_TYPES: u32 = {}u;", RAY_TYPES.len()));
+        line(format_args!("var<private> counters: array<Counters, RAY_TYPES>; // of this invocation, by ray type"));
         line(format_args!("var<private> ray_kind: u32;"));
     }
     let begin = if counting { "ray_kind = kind; count_ray();" } else { "" };

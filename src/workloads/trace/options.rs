@@ -1,5 +1,6 @@
 //! Options of `--structure name:key=value,...`: what they take, and what they are about.
 
+use super::algorithm::Agreement;
 use super::selection::Selection;
 
 /// An option of an algorithm.
@@ -139,7 +140,8 @@ pub const COMMON_OPTIONS: &[OptionInfo] = &[
         "watertight",
         "ray/triangle test: watertight, or the one of Möller and Trumbore, which loses rays at edges",
         Kind::Word(&["watertight", "moller-trumbore"]),
-    ),
+    )
+    .idle_if(has_own_test),
     OptionInfo::new(
         Axis::Device,
         "reflections",
@@ -174,6 +176,11 @@ pub const COMMON_OPTIONS: &[OptionInfo] = &[
 
 fn reads_indexed(s: &Selection) -> Option<String> {
     (!s.method().traversal.leaf_order).then(|| format!("{} reads all triangles by their vertices", s.name()))
+}
+
+fn has_own_test(s: &Selection) -> Option<String> {
+    let is_known = s.method().traversal.agreement != Agreement::HitsOnly;
+    (!is_known).then(|| "the driver has a test of its own".to_owned())
 }
 
 fn goes_together(s: &Selection) -> Option<String> {

@@ -2,7 +2,7 @@
 //! `kernels/trace/staged/primary.wgsl` and `bounce.wgsl`.
 
 use crate::math::Ray;
-use crate::workloads::trace::backend::CountedPixel;
+use crate::workloads::trace::backend::{ByRayType, CountedPixel};
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::path::{Frame, PRIMARY, Paths, REFLECTED};
 use crate::workloads::trace::traverse::{GROUP, Lanes, Traverse, bits};
@@ -17,7 +17,7 @@ pub struct Waiting<C> {
     colour: Vec3A,
     weight: f32,
     first: (u32, f32),
-    counters: [C; 3],
+    counters: ByRayType<C>,
 }
 
 impl<C: Count> Waiting<C> {

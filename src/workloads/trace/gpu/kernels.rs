@@ -1,10 +1,10 @@
 //! Kernel variants: an entry file, a traversal, a set of constants, and the bindings that go with them.
 
 use crate::device::vulkan::{Binding, BindingKind, ReadBuffer, TEXTURE_WIDTH, Texel};
-use crate::device::{Constants, KernelFile, Source, assemble};
+use crate::device::{Constants, Feature, KernelFile, Source, assemble};
 use crate::error::{Error, Result};
 use crate::math;
-use crate::workloads::trace::backend::Config;
+use crate::workloads::trace::backend::{AMBIENT_RAYS, Config};
 use crate::workloads::trace::intersect::{TriangleTest, moller_trumbore};
 use crate::workloads::trace::method::{Pattern, ShadowRays};
 use crate::workloads::trace::{Axis, COMMON_OPTIONS, Method, OptionInfo, Parameter, Selection, algorithms, count};
@@ -14,6 +14,9 @@ pub use crate::workloads::kernel_files::FILES;
 
 const COUNT_ON: &str = "generated/count_on.wgsl";
 const COUNT_OFF: &str = "generated/count_off.wgsl";
+
+/// The binding of the driver's structure.
+pub(super) const DRIVER_TREE: u32 = 14;
 
 /// Every file that a kernel can include: those of `kernels/`, and generated ones.
 pub fn files() -> &'static [KernelFile] {
@@ -121,6 +124,15 @@ impl Entry {
     }
 }
 
+/// What follows from primary hits.
+fn secondary(config: Config) -> &'static str {
+    match config {
+        Config::P | Config::PS | Config::PSR => "trace/secondary/mirrored.wgsl",
+        Config::AO => "trace/secondary/ambient.wgsl",
+        Config::DIFFUSE => "trace/secondary/diffuse.wgsl",
+    }
+}
+
 /// Stack entries for a tree of `depth` levels and the EMPTY at the bottom: a multiple of 32, so that few different
 /// kernels are compiled.
 pub fn stack_size(depth: u32) -> u32 {
@@ -162,6 +174,9 @@ impl Kernel {
             ("counting", if counting { COUNT_ON } else { COUNT_OFF }),
             ("store", if counting { "trace/store_counted.wgsl" } else { "trace/store_timed.wgsl" }),
         ];
+        if let Entry::Render { config, .. } | Entry::Packets { config, .. } = self.entry {
+            slots.push(("secondary", secondary(config)));
+        }
         if let Entry::Staged { pass, .. } = self.entry {
             let is_last = pass == StagedPass::LastBounce;
             slots.push(("append", if is_last { "trace/staged/end.wgsl" } else { "trace/staged/append.wgsl" }));
@@ -193,6 +208,9 @@ impl Kernel {
             Binding::new(7, BindingKind::Uniform),
             Binding::new(8, BindingKind::ReadWrite),
         ];
+        if self.method.traversal.needs.has(Feature::RayQuery) {
+            layout.push(Binding::new(DRIVER_TREE, BindingKind::AccelerationStructure));
+        }
         if render {
             layout.extend([4, 5].map(|number| Binding::new(number, input(Texel::Bytes16))));
         }
@@ -234,6 +252,9 @@ impl Kernel {
         }
         match self.entry {
             Entry::Render { config, .. } | Entry::Staged { config, .. } | Entry::Packets { config, .. } => {
+                if config == Config::AO {
+                    constants.unsigned("AMBIENT_RAYS", AMBIENT_RAYS);
+                }
                 constants.flag("SHADOWS", config.shadows());
                 constants.flag("TO_LIGHT", self.method.shadows == ShadowRays::ToLight);
                 constants.flag("FOUR_RAYS", self.method.pattern == Pattern::Four);

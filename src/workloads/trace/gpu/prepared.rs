@@ -1,14 +1,15 @@
 //! A scene and a structure on a device with one traversal: images, counting, given rays. Timing is in [`super::path`].
 
-use super::kernels::{Entry, Kernel, stack_size};
+use super::kernels::{DRIVER_TREE, Entry, Kernel, stack_size};
 use super::path::LastFrame;
 use super::rendering::{Part, entries_of, stages};
 use super::upload::Uploaded;
 use crate::camera::View;
 use crate::device::VulkanDevice;
-use crate::device::vulkan::{Bindings, Buffer, Pipeline, PipelineDescription, Resource};
+use crate::device::vulkan::{AccelerationStructure, Bindings, Buffer, Pipeline, PipelineDescription, Resource};
 use crate::error::{Error, Result};
 use crate::math::{Hit, T_MAX};
+use crate::record::row::Metric;
 use crate::scene::Scene;
 use crate::workloads::trace::backend::*;
 use crate::workloads::trace::cpu::cannot_walk;
@@ -94,6 +95,8 @@ impl<'a> GpuPrepared<'a> {
             (7, Resource::from(&scene.structure)),
         ];
         resources.extend(scene.corners.as_ref().map(|corners| (13, Resource::from(corners))));
+        let driver_tree = scene.driver_tree.as_ref();
+        resources.extend(driver_tree.map(|tree| (DRIVER_TREE, Resource::AccelerationStructure(tree))));
         resources.extend(others);
         self.device.bind(pipeline, &resources)
     }
@@ -193,6 +196,12 @@ impl Prepared for GpuPrepared<'_> {
             Some(_) => stages(self.method, config).iter().map(|stage| stage.0).collect(),
             None => Vec::new(),
         }
+    }
+
+    fn artifact_metrics(&self) -> Vec<Metric> {
+        let build_ms = |tree: &AccelerationStructure| tree.build_time().as_secs_f64() * 1e3;
+        let driver_tree = self.uploaded.driver_tree.as_ref();
+        driver_tree.map(|tree| Metric::new("driver_build_ms", build_ms(tree))).into_iter().collect()
     }
 
     fn allocated(&self) -> (u64, u64) {

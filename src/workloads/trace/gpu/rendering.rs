@@ -149,7 +149,7 @@ impl GpuPrepared<'_> {
                     height: size.height,
                     shadow_reach: self.lengths.reach,
                     part: extents.len() as u32,
-                    pad: 0,
+                    ambient_reach: self.lengths.ambient,
                 };
                 uniforms.extend_from_slice(bytemuck::bytes_of(&uniform));
                 uniforms.resize(uniforms.len().next_multiple_of(stride as usize), 0);

@@ -26,7 +26,7 @@ pub struct FrameUniform {
     pub height: u32,
     pub shadow_reach: f32,
     pub part: u32,
-    pub pad: u32,
+    pub ambient_reach: f32,
 }
 
 /// `Waiting` of `kernels/trace/staged/list.wgsl`: a path that goes on in a mirror.

@@ -1,8 +1,8 @@
 //! Scene and structure on a device, and the ledger of their bytes.
 
 use super::shared::LeafTriangle;
-use crate::device::VulkanDevice;
-use crate::device::vulkan::{Buffer, ReadBuffer, Texel, Texture};
+use crate::device::vulkan::{AccelerationStructure, Buffer, ReadBuffer, Texel};
+use crate::device::{Feature, VulkanDevice};
 use crate::error::Result;
 use crate::scene::Scene;
 use crate::workloads::trace::method::{Fetch, TriangleLayout};
@@ -22,6 +22,8 @@ pub(super) struct Uploaded {
     /// All above are textures.
     pub textures: bool,
     pub structure: Buffer,
+    /// The driver's own structure, for traversals that query it.
+    pub driver_tree: Option<AccelerationStructure>,
     /// Bytes of vertices, materials and the triangles' materials.
     pub geometry_bytes: u64,
     /// Bytes of nodes (or cells), of triangle references and of corners in their order.
@@ -84,6 +86,12 @@ impl Uploaded {
             triangle_materials: of_triangles?,
             textures,
             structure: device.uniform("the structure's constants", &uniform)?,
+            driver_tree: method
+                .traversal
+                .needs
+                .has(Feature::RayQuery)
+                .then(|| driver_tree(device, scene, structure))
+                .transpose()?,
             geometry_bytes: size(bytes(&scene.vertices))
                 + size(bytes(&scene.materials))
                 + size_of::<u32>() as u64 * scene.triangles.len() as u64,
@@ -104,6 +112,13 @@ fn materials_by_triangle(scene: &Scene) -> Vec<u32> {
     let mut materials: Vec<u32> = scene.triangles.iter().map(|t| t.material).collect();
     materials.resize(materials.len().next_multiple_of(4), 0);
     materials
+}
+
+/// The driver's structure over the triangle references, whose order it gets.
+fn driver_tree(device: &VulkanDevice, scene: &Scene, structure: &dyn Structure) -> Result<AccelerationStructure> {
+    let positions: Vec<[f32; 3]> = scene.vertices.iter().map(|vertex| vertex.position_a().to_array()).collect();
+    let indices: Vec<[u32; 3]> = structure.triangle_refs().iter().map(|triangle_ref| triangle_ref.vertices).collect();
+    device.acceleration_structure("the driver's structure", &positions, &indices)
 }
 
 fn in_leaf_order(scene: &Scene, structure: &dyn Structure) -> Vec<LeafTriangle> {

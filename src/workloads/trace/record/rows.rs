@@ -3,6 +3,7 @@
 use super::variant::{split_variant, variant_of};
 use super::*;
 use crate::record::row::{Artifact, Check, Input, Metric, Value, metric};
+use serde::Deserializer;
 
 fn integer(metrics: &[Metric], name: &str) -> u64 {
     metric(metrics, None, name).and_then(Value::integer).unwrap_or_default()
@@ -210,12 +211,30 @@ impl ConfigurationRecord {
     }
 }
 
-/// Counters of all ray types as metrics.
-pub fn counter_metrics(counters: &[CounterSums; 3]) -> Vec<Metric> {
+/// Counters as metrics: those of primary, shadow and reflected rays always, those of other types where there are such
+/// rays.
+pub fn counter_metrics(counters: &ByRayType<CounterSums>) -> Vec<Metric> {
     let of_type = |(ray, sums): (&&str, &CounterSums)| {
         sums.values().into_iter().map(|(name, sum)| Metric::of(ray, name, sum)).collect::<Vec<_>>()
     };
-    RAY_TYPES.iter().zip(counters).flat_map(of_type).collect()
+    let is_shown = |(index, (_, sums)): &(usize, (&&str, &CounterSums))| *index < SCHEMA_1 || sums.rays > 0;
+    RAY_TYPES.iter().zip(counters).enumerate().filter(is_shown).map(|(_, pair)| pair).flat_map(of_type).collect()
+}
+
+/// Ray types of schema 1: primary, shadow, reflected.
+const SCHEMA_1: usize = 3;
+
+/// Reads the counters of schema 1; those of other ray types are zero.
+pub(super) fn first_ray_types<'d, D: Deserializer<'d>>(from: D) -> Result<Option<ByRayType<CounterSums>>, D::Error> {
+    let read: Option<[CounterSums; SCHEMA_1]> = Option::deserialize(from)?;
+    Ok(read.map(by_ray_type))
+}
+
+/// Counters of the first ray types; those of the others are zero.
+pub fn by_ray_type(first: [CounterSums; SCHEMA_1]) -> ByRayType<CounterSums> {
+    let mut all = ByRayType::default();
+    all[..SCHEMA_1].copy_from_slice(&first);
+    all
 }
 
 impl Verification {
