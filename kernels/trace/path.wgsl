@@ -169,13 +169,13 @@ fn follow(kind: u32, path: ptr<function, Path>) -> bool {
 fn follow_hit(kind: u32, path: ptr<function, Path>, triangle_ref: u32) -> bool {
     let ray = (*path).ray;
     let surface = surface_of(kind, path, triangle_ref);
-    if (!group_any((*path).alive)) {
-        return false;
-    }
     var ambient: vec4<f32>; // colour and reflectivity
     if ((*path).alive) {
         ambient = read_ambient(surface.material);
         (*path).colour += ambient.xyz * (*path).weight;
+    }
+    if (!group_any((*path).alive)) {
+        return false;
     }
 
     // Add the light of every lamp that is seen from there

@@ -5,6 +5,7 @@ mod bih;
 mod broken;
 mod degenerate;
 mod kdtree_sort;
+mod passes;
 mod registry;
 mod scenes;
 mod selections;
@@ -20,7 +21,7 @@ use rtbench::workloads::trace::{Selection, Structure};
 use std::sync::Arc;
 
 /// Every builder, with options that lead through other code.
-pub const SELECTIONS: [&str; 42] = [
+pub const SELECTIONS: [&str; 46] = [
     "grid",
     "grid:factor=1",
     "grid:x=5",
@@ -63,6 +64,10 @@ pub const SELECTIONS: [&str; 42] = [
     "bih:max_leaf=1",
     "bih:max_leaf=15",
     "brute",
+    "bvh:build=lbvh",
+    "bvh:build=lbvh,max_leaf=1",
+    "bvh:build=ploc-passes",
+    "bvh:build=ploc-passes,max_leaf=1,radius=2",
 ];
 
 pub fn build(selection: &str, scene: &Scene, threads: usize) -> Arc<dyn Structure> {

@@ -4,7 +4,7 @@ use rtbench::camera::View;
 use rtbench::device::{DeviceInfo, DeviceType, FrameTime, Interrupted};
 use rtbench::harness::environment;
 use rtbench::math::Hit;
-use rtbench::record::row::{SCHEMA, Samples, Settings, Status, TimingSource};
+use rtbench::record::row::{Metric, SCHEMA, Samples, Settings, Status, TimingSource};
 use rtbench::record::run::{DeviceRecord, Environment, PlanRecord, Provenance};
 use rtbench::workloads::trace::backend::{Config, CountedPixel, Pixel, Prepared, Size, Timed, TraceRay};
 use rtbench::workloads::trace::record::{
@@ -250,5 +250,9 @@ impl Prepared for Faulty<'_> {
 
     fn allocated(&self) -> (u64, u64) {
         self.inner.allocated()
+    }
+
+    fn artifact_metrics(&self) -> Vec<Metric> {
+        self.inner.artifact_metrics()
     }
 }

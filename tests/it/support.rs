@@ -116,6 +116,11 @@ pub fn own_gpu(checked: bool) -> Option<VulkanDevice> {
     open(VulkanOptions { checked, ..VulkanOptions::default() })
 }
 
+/// A device of one's own.
+pub fn gpu_of(options: VulkanOptions) -> Option<VulkanDevice> {
+    open(options)
+}
+
 /// A file below the folder named by an environment variable; without it, says so and returns nothing.
 pub fn file_below(variable: &str, path: &str) -> Option<PathBuf> {
     let Some(folder) = std::env::var_os(variable) else {

@@ -4,10 +4,10 @@ use crate::device::{DeviceInfo, DeviceType, Feature, Features};
 use crate::error::{Error, Result};
 
 /// Optional features that an opened device has wherever its adapter offers them. Others are never requested: a driver
-/// may compile the same kernel otherwise with them. Half precision and ray queries only add types, and subgroups add
+/// may compile the same kernel otherwise with them. Half precision and ray queries only add types and subgroups add
 /// operations, which few kernels use.
 pub const WANTED: Features =
-    Features::of(&[Feature::Timestamps, Feature::Half, Feature::FloatAtomics, Feature::RayQuery, Feature::Subgroups]);
+    Features::of(&[Feature::Timestamps, Feature::Half, Feature::FloatAtomics, Feature::Subgroups, Feature::RayQuery]);
 
 /// A Vulkan adapter that was listed and can be opened.
 pub struct Adapter {

@@ -108,7 +108,8 @@ impl VulkanDevice {
 
     /// The most bytes that can be bound as one buffer.
     pub fn max_binding(&self) -> u64 {
-        self.limits.max_storage_buffer_binding_size.min(self.limits.max_buffer_size)
+        let limits = &self.limits;
+        limits.max_storage_buffer_binding_size.min(limits.max_buffer_size).min(self.options().max_binding)
     }
 
     /// The most bytes that a kernel can declare as one `var<uniform>`.

@@ -18,11 +18,18 @@ pub struct VulkanOptions {
     pub max_dispatch: Duration,
     /// A submission that takes longer counts as a lost device.
     pub timeout: Duration,
+    /// Larger buffers are refused, even if the device can bind them; in bytes.
+    pub max_binding: u64,
 }
 
 impl Default for VulkanOptions {
     fn default() -> Self {
-        VulkanOptions { checked: false, max_dispatch: Duration::from_millis(500), timeout: Duration::from_secs(300) }
+        VulkanOptions {
+            checked: false,
+            max_dispatch: Duration::from_millis(500),
+            timeout: Duration::from_secs(300),
+            max_binding: u64::MAX,
+        }
     }
 }
 

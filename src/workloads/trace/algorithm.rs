@@ -5,9 +5,10 @@ use super::method::Group;
 use super::options::OptionInfo;
 use super::selection::Selection;
 use super::structure::{Structure, StructureKind};
-use crate::device::Features;
+use crate::device::{Features, Interrupted, VulkanDevice};
 use crate::error::Result;
 use crate::scene::Scene;
+use crate::workloads::trace::build::gpu::BuildTimes;
 use crate::workloads::trace::common::estimate::Estimate;
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
@@ -45,7 +46,12 @@ pub struct Builder {
     pub build: fn(&Selection, &Scene) -> Result<Made>,
     /// Estimates its memory before it is built, where that is possible.
     pub estimate: Option<fn(&Selection, &Scene) -> Result<Estimate>>,
+    /// Builds the same bytes on a device, where it can.
+    pub on_device: Option<OnDevice>,
 }
+
+/// Builds a structure on a device; `None` for options with which it is built on the CPU alone.
+pub type OnDevice = fn(&Selection, &Scene, &VulkanDevice, Interrupted) -> Result<Option<(Made, BuildTimes)>>;
 
 /// What a builder makes.
 pub struct Made {

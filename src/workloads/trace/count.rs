@@ -1,6 +1,8 @@
 //! What traversals count. The list at the end of this file is the only one: the Rust types, and the WGSL that counting
 //! and timed kernels include, are made from it.
 
+use crate::math::Ray;
+use crate::workloads::trace::traverse::{Lanes, Search, Traverser};
 use bytemuck::{Pod, Zeroable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -35,6 +37,12 @@ macro_rules! counters {
                 $(self.$field += u64::from(counters.$field);)+
             }
 
+            /// The sums of both.
+            #[must_use]
+            pub fn with(&self, other: &CounterSums) -> CounterSums {
+                CounterSums { $($field: self.$field + other.$field,)+ }
+            }
+
             /// Name and sum of each counter.
             pub fn values(&self) -> Vec<(&'static str, u64)> {
                 vec![$((stringify!($field), self.$field)),+]
@@ -52,6 +60,15 @@ macro_rules! counters {
             /// What was counted.
             fn total(&self) -> Counters;
 
+            /// Traverses with this way of counting.
+            fn traverse(
+                by: &dyn Traverser,
+                search: Search,
+                rays: &Lanes<Ray>,
+                alive: u64,
+                counters: &mut Lanes<Self>,
+            ) -> Lanes<u32>;
+
             /// So many tests of nodes' boxes.
             #[inline(always)]
             fn box_tests(&mut self, tests: u32) {
@@ -64,12 +81,30 @@ macro_rules! counters {
             fn total(&self) -> Counters {
                 Counters::default()
             }
+            fn traverse(
+                by: &dyn Traverser,
+                search: Search,
+                rays: &Lanes<Ray>,
+                alive: u64,
+                _: &mut Lanes<CountOff>,
+            ) -> Lanes<u32> {
+                by.uncounted(search, rays, alive)
+            }
         }
 
         impl Count for Counters {
             $(#[inline(always)] fn $event(&mut self) { self.$field += 1; })+
             fn total(&self) -> Counters {
                 *self
+            }
+            fn traverse(
+                by: &dyn Traverser,
+                search: Search,
+                rays: &Lanes<Ray>,
+                alive: u64,
+                counters: &mut Lanes<Counters>,
+            ) -> Lanes<u32> {
+                by.counted(search, rays, alive, counters)
             }
         }
 

@@ -5,6 +5,7 @@ pub mod artifacts;
 pub mod backend;
 pub mod bih;
 pub mod brute;
+pub mod build;
 pub mod building;
 pub mod bvh;
 mod case;

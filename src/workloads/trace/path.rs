@@ -9,7 +9,7 @@ use crate::workloads::trace::backend::{ByRayType, Config, CountedPixel, GivenRay
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::method::{Group, Pattern, ShadowRays};
 use crate::workloads::trace::shade::{Surface, normalize3, phong, reflected_ray, rgba8, surface_at};
-use crate::workloads::trace::traverse::{GROUP, Lanes, Traverse, Triangles, bits, set_of};
+use crate::workloads::trace::traverse::{GROUP, Lanes, Traverser, Triangles, bits, set_of};
 use glam::Vec3A;
 
 /// Indices of the ray types.
@@ -161,7 +161,7 @@ impl<'a> Frame<'a> {
 
     /// Traces the segments of rays of this kind, adds their light, and makes the mirrored rays the next ones. False if
     /// nothing was hit.
-    pub fn follow<T: Traverse, C: Count>(&self, traversal: &T, kind: usize, paths: &mut Paths<C>) -> bool {
+    pub fn follow<C: Count>(&self, traversal: &dyn Traverser, kind: usize, paths: &mut Paths<C>) -> bool {
         let Paths { rays, alive, counters, .. } = paths;
         bits(*alive).for_each(|lane| counters[kind][lane].ray());
         let triangle_refs = traversal.nearest_hits(rays, *alive, &mut counters[kind]);
@@ -193,9 +193,9 @@ impl<'a> Frame<'a> {
     }
 
     /// The same as [`Frame::follow`] for segments whose nearest hits are known.
-    pub fn follow_hits<T: Traverse, C: Count>(
+    pub fn follow_hits<C: Count>(
         &self,
-        traversal: &T,
+        traversal: &dyn Traverser,
         kind: usize,
         paths: &mut Paths<C>,
         triangle_refs: &Lanes<u32>,

@@ -4,13 +4,13 @@ use crate::workloads::trace::backend::CountedPixel;
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::path::{Frame, PRIMARY};
 use crate::workloads::trace::secondary::shade_primary;
-use crate::workloads::trace::traverse::{Traverse, bits};
+use crate::workloads::trace::traverse::{Traverser, bits};
 
 /// Renders the group whose top left pixel is `corner`, column and row, and hands each pixel inside the image to `store`
 /// with its column and row.
-pub fn render_group<T: Traverse, C: Count>(
+pub fn render_group<C: Count>(
     frame: &Frame,
-    traversal: &T,
+    traversal: &dyn Traverser,
     corner: (u32, u32),
     store: impl FnMut(u32, u32, CountedPixel),
 ) {

@@ -10,16 +10,16 @@ use crate::workloads::trace::backend::{AMBIENT_RAYS, Config, Size};
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::path::{AMBIENT, DIFFUSE, Frame, PRIMARY, Paths, REFLECTED};
 use crate::workloads::trace::shade::Surface;
-use crate::workloads::trace::traverse::{GROUP, Lanes, Traverse, bits};
+use crate::workloads::trace::traverse::{GROUP, Lanes, Traverser, bits};
 use glam::Vec3A;
 
 /// Of all directions; pixels and numbers of rays tell them apart.
 const SEED: u32 = 1;
 
 /// Goes on from the primary hits of the group whose top left pixel is `corner`, column and row, to the pixels' colours.
-pub fn shade_primary<T: Traverse, C: Count>(
+pub fn shade_primary<C: Count>(
     frame: &Frame,
-    traversal: &T,
+    traversal: &dyn Traverser,
     corner: (u32, u32),
     paths: &mut Paths<C>,
     triangle_refs: &Lanes<u32>,
@@ -32,7 +32,7 @@ pub fn shade_primary<T: Traverse, C: Count>(
 }
 
 /// Light and shadow rays, and the segments that follow in mirrors.
-fn mirrored<T: Traverse, C: Count>(frame: &Frame, traversal: &T, paths: &mut Paths<C>, triangle_refs: &Lanes<u32>) {
+fn mirrored<C: Count>(frame: &Frame, traversal: &dyn Traverser, paths: &mut Paths<C>, triangle_refs: &Lanes<u32>) {
     if !frame.follow_hits(traversal, PRIMARY, paths, triangle_refs) {
         return;
     }
@@ -44,9 +44,9 @@ fn mirrored<T: Traverse, C: Count>(frame: &Frame, traversal: &T, paths: &mut Pat
 }
 
 /// The share of ambient rays that hit nothing.
-fn ambient<T: Traverse, C: Count>(
+fn ambient<C: Count>(
     frame: &Frame,
-    traversal: &T,
+    traversal: &dyn Traverser,
     corner: (u32, u32),
     paths: &mut Paths<C>,
     triangle_refs: &Lanes<u32>,
@@ -69,9 +69,9 @@ fn ambient<T: Traverse, C: Count>(
 }
 
 /// The colour of the surface that the diffuse ray finds, lit from where the ray comes from.
-fn diffuse<T: Traverse, C: Count>(
+fn diffuse<C: Count>(
     frame: &Frame,
-    traversal: &T,
+    traversal: &dyn Traverser,
     corner: (u32, u32),
     paths: &mut Paths<C>,
     triangle_refs: &Lanes<u32>,

@@ -6,7 +6,7 @@ use super::input::TraceInput;
 use super::rays::{self, Config};
 use super::record::{RAY_TYPES, WORKLOAD, variant_of};
 use super::tracer::Decorate;
-use super::{Selection, artifacts};
+use super::{Selection, artifacts, build};
 use crate::camera::CameraPath;
 use crate::device::Source;
 use crate::error::{Error, Result};
@@ -184,6 +184,7 @@ paths that have not changed.",
         ("thesis-lite", include_str!("../../../presets/sweep/thesis-lite.toml")),
         ("rt2", include_str!("../../../presets/sweep/rt2.toml")),
         ("rt2-lite", include_str!("../../../presets/sweep/rt2-lite.toml")),
+        ("structures", include_str!("../../../presets/sweep/structures.toml")),
     ],
 };
 
@@ -247,7 +248,9 @@ impl Workload for Trace {
     }
 
     fn kernels(&self) -> Result<Vec<(String, Source)>> {
-        kernels::defaults()
+        let mut all = kernels::defaults()?;
+        all.extend(build::gpu::kernels()?);
+        Ok(all)
     }
 
     fn machine_metrics(&self) -> &'static [&'static str] {

@@ -94,6 +94,7 @@ fn panel(title: String, x_label: &str, series: Vec<Series>) -> Panel {
         groups: Vec::new(),
         bars: Vec::new(),
         bands: Vec::new(),
+        marks: Vec::new(),
     }
 }
 
@@ -311,7 +312,8 @@ fn bars_of(data: &Data, device: usize, config: Config) -> Option<Drawn> {
         ticks: (0..groups.len()).map(|group| group as f64).collect(),
     };
     let label = &data.devices[device].label;
-    let panel = Panel { title: String::new(), x, y, series: Vec::new(), groups, bars, bands: Vec::new() };
+    let panel =
+        Panel { title: String::new(), x, y, series: Vec::new(), groups, bars, bands: Vec::new(), marks: Vec::new() };
     let title = format!("Frame times at {side}x{side}, {config:?}, {label}");
     let caption = format!("Frame times at {side}x{side} ({}).", words(config));
     Some((format!("-{config:?}").to_lowercase(), caption, picture(title, vec![panel])))

@@ -6,7 +6,7 @@ use super::rendering::{Part, entries_of, stages};
 use super::upload::Uploaded;
 use crate::camera::View;
 use crate::device::VulkanDevice;
-use crate::device::vulkan::{AccelerationStructure, Bindings, Buffer, Pipeline, PipelineDescription, Resource};
+use crate::device::vulkan::{Bindings, Buffer, Pipeline, PipelineDescription, Resource};
 use crate::error::{Error, Result};
 use crate::math::{Hit, T_MAX};
 use crate::record::row::Metric;
@@ -16,6 +16,7 @@ use crate::workloads::trace::cpu::cannot_walk;
 use crate::workloads::trace::{Method, Structure};
 use std::collections::HashMap;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// Rays per dispatch of [`Prepared::cast`].
 const TRACE_RAYS: usize = 1 << 20;
@@ -199,9 +200,10 @@ impl Prepared for GpuPrepared<'_> {
     }
 
     fn artifact_metrics(&self) -> Vec<Metric> {
-        let build_ms = |tree: &AccelerationStructure| tree.build_time().as_secs_f64() * 1e3;
+        let ms = |time: Duration| time.as_secs_f64() * 1e3;
         let driver_tree = self.uploaded.driver_tree.as_ref();
-        driver_tree.map(|tree| Metric::new("driver_build_ms", build_ms(tree))).into_iter().collect()
+        let of_driver = driver_tree.map(|tree| Metric::new("driver_build_ms", ms(tree.build_time())));
+        of_driver.into_iter().chain([Metric::new("upload_ms", ms(self.uploaded.structure_time))]).collect()
     }
 
     fn allocated(&self) -> (u64, u64) {

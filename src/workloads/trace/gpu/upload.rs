@@ -8,6 +8,7 @@ use crate::scene::Scene;
 use crate::workloads::trace::method::{Fetch, TriangleLayout};
 use crate::workloads::trace::{Method, Structure, TriangleRef};
 use bytemuck::Pod;
+use std::time::Duration;
 
 /// One scene and one structure on a device.
 pub(super) struct Uploaded {
@@ -28,6 +29,8 @@ pub(super) struct Uploaded {
     pub geometry_bytes: u64,
     /// Bytes of nodes (or cells), of triangle references and of corners in their order.
     pub structure_bytes: u64,
+    /// Until these were on the device, by the host's clock.
+    pub structure_time: Duration,
 }
 
 const TOO_LARGE: &str = "use a smaller scene, a structure with fewer references, or another device";
@@ -67,23 +70,27 @@ impl Uploaded {
             true => {
                 let what = "the corners in leaf order";
                 check_size(device, what, corner_bytes, Texel::Bytes16, textures)?;
-                Some(input(device, what, bytes(&in_leaf_order(scene, structure)), Texel::Bytes16, textures)?)
+                Some(device.time_upload(|| {
+                    input(device, what, bytes(&in_leaf_order(scene, structure)), Texel::Bytes16, textures)
+                })?)
             }
             false => None,
         };
         let structure_bytes =
             size(&nodes) + size(bytes(triangle_refs)) + if corners.is_some() { corner_bytes as u64 } else { 0 };
         let [vertices, triangle_refs, nodes, materials, of_triangles] =
-            inputs.map(|(what, contents, texel)| input(device, what, contents, texel, textures));
+            inputs.map(|(what, contents, texel)| device.time_upload(|| input(device, what, contents, texel, textures)));
+        let ((triangle_refs, refs_time), (nodes, nodes_time)) = (triangle_refs?, nodes?);
+        let (corners, corners_time) = corners.unzip();
         let mut uniform = structure.uniform();
         uniform.resize(uniform.len().next_multiple_of(16).max(16), 0);
         let uploaded = Uploaded {
-            vertices: vertices?,
-            triangle_refs: triangle_refs?,
-            nodes: nodes?,
+            vertices: vertices?.0,
+            triangle_refs,
+            nodes,
             corners,
-            materials: materials?,
-            triangle_materials: of_triangles?,
+            materials: materials?.0,
+            triangle_materials: of_triangles?.0,
             textures,
             structure: device.uniform("the structure's constants", &uniform)?,
             driver_tree: method
@@ -96,6 +103,7 @@ impl Uploaded {
                 + size(bytes(&scene.materials))
                 + size_of::<u32>() as u64 * scene.triangles.len() as u64,
             structure_bytes,
+            structure_time: refs_time + nodes_time + corners_time.unwrap_or_default(),
         };
         device.check()?;
         Ok(uploaded)

@@ -71,6 +71,9 @@ pub struct StructureRecord {
     pub build_threads: usize,
     /// Its sizes.
     pub memory: Memory,
+    /// Milliseconds of its upload to the device; absent where it was not measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub upload_ms: Option<f64>,
     /// How it was built where not as its options say; absent otherwise.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub note: String,

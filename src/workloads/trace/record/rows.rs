@@ -106,19 +106,22 @@ impl StructureRecord {
             build_ms: number(&artifact.metrics, "build_ms"),
             build_threads: integer(&artifact.metrics, "build_threads") as usize,
             memory: memory_of(&artifact.metrics),
+            upload_ms: metric(&artifact.metrics, None, "upload_ms").and_then(Value::number),
             note: artifact.note.clone(),
         })
     }
 
     /// For the general schema.
     pub(crate) fn to_artifact(&self) -> Artifact {
-        let StructureRecord { scene, structure, variant, properties, build_ms, build_threads, memory, note } = self;
+        let StructureRecord { scene, structure, variant, properties, build_ms, build_threads, memory, upload_ms, note } =
+            self;
         let mut key = Key { workload: WORKLOAD.into(), ..Key::default() };
         key.axes.insert("scene".into(), scene.name.clone());
         key.axes.insert("structure".into(), structure.clone());
         key.axes.extend(split_variant(structure, variant));
         key.inputs.insert("scene".into(), scene.hash.clone());
-        let metrics = structure_metrics(properties, *memory, *build_ms, *build_threads);
+        let mut metrics = structure_metrics(properties, *memory, *build_ms, *build_threads);
+        metrics.extend(upload_ms.map(|ms| Metric::new("upload_ms", ms)));
         Artifact { key, metrics, note: note.clone() }
     }
 }
