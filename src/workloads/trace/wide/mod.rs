@@ -21,9 +21,9 @@ use crate::error::Result;
 use crate::scene::Scene;
 use std::sync::Arc;
 
-static PAIRS: StructureKind = wide("quantised BVH");
-static FOUR: StructureKind = wide("BVH4");
-static EIGHT: StructureKind = wide("BVH8");
+pub(in crate::workloads::trace) static PAIRS: StructureKind = wide("quantised BVH");
+pub(in crate::workloads::trace) static FOUR: StructureKind = wide("BVH4");
+pub(in crate::workloads::trace) static EIGHT: StructureKind = wide("BVH8");
 
 const fn wide(name: &'static str) -> StructureKind {
     StructureKind { name, node_texel: Texel::Bytes16, has_cells: false }
@@ -65,7 +65,7 @@ fn has_octants(s: &Selection) -> bool {
 }
 
 /// Builds the BVH that the options describe, and collapses it.
-fn build(s: &Selection, scene: &Scene, width: usize) -> Result<Made> {
+pub(in crate::workloads::trace) fn build(s: &Selection, scene: &Scene, width: usize) -> Result<Made> {
     let (bvh, note) = bvh::options::build(s, scene)?;
     Ok(Made { structure: Arc::new(collapse::collapse(bvh, width, has_octants(s))), note })
 }

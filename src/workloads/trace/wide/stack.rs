@@ -56,6 +56,7 @@ pub static STACK4: Traversal = Traversal {
     structure: &FOUR,
     parameters: |s| parameters(s).and("WIDTH", Parameter::Word(4)),
     twin: Some(TWIN),
+    leaf_order: true,
     ..Traversal::INDEPENDENT
 };
 
@@ -83,7 +84,7 @@ fn insert(reference: u32, t: f32, base: usize, stack: &mut Stack) {
 }
 
 /// Nodes of several children, in order of distance.
-struct Sorted<'a>(&'a Wide);
+pub(in crate::workloads::trace) struct Sorted<'a>(pub &'a Wide);
 
 impl Down for Sorted<'_> {
     fn root(&self) -> (Vec3A, Vec3A, u32) {
