@@ -83,7 +83,7 @@ fn names() -> Vec<&'static str> {
 }
 
 /// Ways to walk a structure other than each one's own.
-const OTHERS: [&str; 52] = [
+const OTHERS: [&str; 53] = [
     "kdtree:search=restart",
     "kdtree:search=pushdown",
     "kdtree:stack=1",
@@ -133,6 +133,7 @@ const OTHERS: [&str; 52] = [
     "bvh-stack:fetch=textures",
     "bih:fetch=textures",
     "bvh-stack:loop=if-if",
+    "bvh-stack:loop=persistent",
     "bvh-stack:loop=speculative",
     "bvh-stack:loop=speculative,cull=off",
     "bvh-stackless:search=trail",

@@ -1,7 +1,7 @@
 //! Other forms of the loops of `bvh-stack`. Twin of `kernels/trace/bvh/if_if.wgsl` and `speculative.wgsl`.
 //!
 //! If-if visits and tests what while-while does, in the same order: it differs in what rays of one instruction stream
-//! wait for.
+//! wait for. Persistent threads ([`crate::workloads::trace::method::Threads`]) run the loops of while-while.
 
 use crate::error::Result;
 use crate::math::Ray;
@@ -31,8 +31,8 @@ pub const LOOP: OptionInfo = OptionInfo::new(
     Axis::Traversal,
     "loop",
     "while-while",
-    "form of the loops (Aila and Laine 2009): speculative is while-while with a leaf postponed",
-    Kind::Word(&["while-while", "if-if", "speculative"]),
+    "form of the loops (Aila and Laine 2009): persistent threads run while-while, speculative postpones a leaf",
+    Kind::Word(&["while-while", "if-if", "persistent", "speculative"]),
 );
 
 /// The constant of the kernel.
