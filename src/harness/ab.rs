@@ -4,6 +4,7 @@
 use super::measure::{self, no_samples};
 use super::run::Opened;
 use super::workload::{Case, Context, Event, Input, Run, Workload};
+use crate::device::Device;
 use crate::error::{Error, Result};
 use crate::record::row::Samples;
 use crate::record::statistics::interleaved_order;
@@ -59,8 +60,9 @@ pub fn run(job: &AbJob, record: &mut dyn FnMut(usize, usize, [RoundTime; 3]) -> 
         for (offset, (a, b)) in pairs.iter().enumerate() {
             job.context.check_interrupt()?;
             let side = |name: &str, error: Error| at(&format!("side {name}"), error);
-            input_a.build(a).map_err(|error| side("a", error))?;
-            input_b.as_deref_mut().unwrap_or(&mut *input_a).build(b).map_err(|error| side("b", error))?;
+            input_a.build(a, device(job, a)).map_err(|error| side("a", error))?;
+            let input_of_b = input_b.as_deref_mut().unwrap_or(&mut *input_a);
+            input_of_b.build(b, device(job, b)).map_err(|error| side("b", error))?;
             pair(job, [&*input_a, input_b.as_deref().unwrap_or(&*input_a)], [a, b], &mut |round, times| {
                 record(index + offset, round, times)
             })?;
@@ -72,6 +74,11 @@ pub fn run(job: &AbJob, record: &mut dyn FnMut(usize, usize, [RoundTime; 3]) -> 
         index += count;
     }
     Ok(())
+}
+
+/// The device that a case runs on.
+fn device<'a>(job: &AbJob<'a>, case: &Case) -> &'a Device {
+    &job.devices[case.device.min(job.devices.len() - 1)].device
 }
 
 fn open<'a>(job: &AbJob<'a>, cases: &[Case]) -> Result<Box<dyn Input + 'a>> {
@@ -101,8 +108,7 @@ fn pair(
     let cases = [a, b, a];
     let mut runs: Vec<Box<dyn Run + '_>> = Vec::new();
     for (name, (input, case)) in SIDES.iter().zip([(inputs[0], a), (inputs[1], b), (inputs[0], a)]) {
-        let device = &job.devices[case.device.min(job.devices.len() - 1)].device;
-        let mut run = input.prepare(device, case).map_err(|error| at(&format!("side {name}"), error))?;
+        let mut run = input.prepare(device(job, case), case).map_err(|error| at(&format!("side {name}"), error))?;
         let verdict = run.verify(case).map_err(|error| at(&format!("side {name}"), error))?;
         if let Some(problem) = verdict.problem {
             return Err(Error::Device(format!("side {name} is wrong: {problem}")));

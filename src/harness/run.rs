@@ -253,19 +253,38 @@ impl<'a> Runner<'a, '_> {
         Ok(())
     }
 
-    /// Builds what the next groups need, as many as main memory should hold at a time. What is refused becomes rows.
+    /// Builds what the next groups need, as many as main memory should hold at a time. What is refused becomes rows. A
+    /// device that is lost over it is opened again for the others.
     fn build(&mut self, input: &mut dyn Input, groups: &mut Vec<Pending>) -> Result<Vec<Pending>> {
-        let (mut batch, mut bytes) = (Vec::new(), 0);
-        while bytes < BATCH_BYTES && !groups.is_empty() {
+        let devices = self.take_devices()?;
+        let built = self.build_on(&devices, input, groups);
+        self.devices = devices.into_iter().map(Some).collect();
+        let (batch, lost) = built?;
+        if let Some(lost) = lost {
+            self.devices[lost] = None;
+        }
+        Ok(batch)
+    }
+
+    /// The groups that are built, and the index of a device that was lost.
+    fn build_on(
+        &mut self,
+        devices: &[Opened],
+        input: &mut dyn Input,
+        groups: &mut Vec<Pending>,
+    ) -> Result<(Vec<Pending>, Option<usize>)> {
+        let (mut batch, mut bytes, mut lost) = (Vec::new(), 0, None);
+        while bytes < BATCH_BYTES && lost.is_none() && !groups.is_empty() {
             self.context.check_interrupt()?;
             let group = groups.remove(0);
             let Some(case) = group.front() else { continue };
-            match input.build(case) {
+            match input.build(case, &devices[case.device].device) {
                 Ok(size) => {
                     bytes += size;
                     batch.push(group);
                 }
                 Err(error) => {
+                    lost = matches!(error, Error::DeviceLost(_)).then_some(case.device);
                     let error = failure(error)?;
                     for case in &group {
                         self.without_result(Row::new(input.key(case), self.context.settings, case.device), &error)?;
@@ -273,7 +292,7 @@ impl<'a> Runner<'a, '_> {
                 }
             }
         }
-        Ok(batch)
+        Ok((batch, lost))
     }
 
     /// Measures all cases of some groups. A lost device costs the row that lost it, and is opened again for the others.

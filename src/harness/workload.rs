@@ -95,12 +95,13 @@ pub trait Input {
     /// Takes note of a row of an earlier session, which the rows of this one are compared with.
     fn remember(&self, _case: &Case, _row: &Row) {}
 
-    /// Builds what the cases of a [`Case::group`] need, unless it is there; `case` is one of them. Returns how many
-    /// bytes of main memory it takes.
+    /// Builds what the cases of a [`Case::group`] need, unless it is there; `case` is one of them, and `device` is the
+    /// one that it runs on, which may build. Returns how many bytes of main memory it takes.
     ///
     /// # Errors
-    /// [`crate::Error::Refused`] where it cannot be built for this input, [`crate::Error::Interrupted`].
-    fn build(&mut self, case: &Case) -> Result<u64>;
+    /// [`crate::Error::Refused`] where it cannot be built for this input, [`crate::Error::Interrupted`], and the
+    /// device's.
+    fn build(&mut self, case: &Case, device: &Device) -> Result<u64>;
 
     /// Brings what was built to a device and makes ready to run every case of its group.
     ///

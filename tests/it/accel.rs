@@ -6,6 +6,7 @@ mod broken;
 mod broken_wide;
 mod degenerate;
 mod kdtree_sort;
+mod passes;
 mod registry;
 mod scenes;
 mod selections;
@@ -22,7 +23,7 @@ use rtbench::workloads::trace::{Selection, Structure};
 use std::sync::Arc;
 
 /// Every builder, with options that lead through other code.
-pub const SELECTIONS: [&str; 60] = [
+pub const SELECTIONS: [&str; 63] = [
     "grid",
     "grid:factor=1",
     "grid:x=5",
@@ -82,6 +83,10 @@ pub const SELECTIONS: [&str; 60] = [
     "cwbvh:build=binned",
     "cwbvh:build=binned,max_leaf=1",
     "cwbvh:build=spatial",
+    "bvh:build=lbvh",
+    "bvh:build=lbvh,max_leaf=1",
+    "bvh:build=ploc-passes",
+    "bvh:build=ploc-passes,max_leaf=1,radius=2",
 ];
 
 pub fn build(selection: &str, scene: &Scene, threads: usize) -> Arc<dyn Structure> {

@@ -34,10 +34,16 @@ fn check(source: &Source) -> Result<naga::Module, String> {
     };
     let module = naga::front::wgsl::parse_str(&source.text)
         .map_err(|e| format!("{}: {}", at(e.location(&source.text)), e.message()))?;
-    Validator::new(ValidationFlags::all(), Capabilities::empty())
+    Validator::new(ValidationFlags::all(), Capabilities::RAY_QUERY)
         .validate(&module)
         .map_err(|e| format!("{}: {:?}", at(e.location(&source.text)), e.into_inner()))?;
     Ok(module)
+}
+
+/// Kernels of a method.
+fn variants(method: &Method) -> usize {
+    let staged = if method.is_staged(2) { 4 } else { 0 };
+    (12 + staged) * 4 * if method.traversal.leaf_order { 2 } else { 1 }
 }
 
 #[test]
@@ -45,9 +51,9 @@ fn every_variant_is_valid() {
     let kernels = kernels::all();
     assert_eq!(
         kernels.len(),
-        (kernels::methods().len() * 8 + 4) * 4,
-        "six render and two trace entries, three passes instead of one where they are staged, timed and counting, two \
-         kinds of driver, buffers and textures"
+        kernels::methods().iter().map(variants).sum::<usize>(),
+        "ten render and two trace entries, three passes instead of one where they are staged, timed and counting, two \
+         kinds of driver, buffers and textures, both layouts of triangles where a traversal takes both"
     );
     for algorithm in algorithms() {
         let method = method(algorithm.name);
@@ -102,6 +108,7 @@ fn a_broken_kernel_is_located() {
         stack_size: 32,
         software_threads: 2,
         textures: false,
+        leaf_order: false,
     };
     let mut source = assemble(&kernel);
     let (_, geom) = kernels::FILES.iter().find(|(name, _)| *name == "lib/geom.wgsl").unwrap();
@@ -148,6 +155,7 @@ fn struct_layouts_agree() {
             stack_size: 32,
             software_threads: 0,
             textures: false,
+            leaf_order: false,
         };
         check(&assemble(&kernel)).unwrap()
     };
@@ -173,7 +181,8 @@ fn struct_layouts_agree() {
             columns,
             height,
             shadow_reach,
-            part
+            part,
+            ambient_reach
         ]
     );
     same_layout!(module, "Grid", GridUniform, [bounds_min, cell_size, bounds_max, resolution, octants]);
@@ -181,7 +190,12 @@ fn struct_layouts_agree() {
     same_layout!(module, "Vertex", Vertex, [position, normal]);
     same_layout!(module, "Material", Material, [ambient, reflectivity, diffuse, exponent, specular]);
     same_layout!(module, "Light", Light, [position, colour]);
-    same_layout!(module, "Counters", Counters, [rays, inner, leaves, tests, pops, restarts, ropes, fallbacks, skips, boxes]);
+    same_layout!(
+        module,
+        "Counters",
+        Counters,
+        [rays, inner, leaves, tests, pops, restarts, ropes, fallbacks, skips, boxes]
+    );
     let (span, members) = layout(module, "CountedPixel");
     assert_eq!(span as usize, size_of::<CountedPixel>());
     assert_eq!(members.iter().find(|m| m.0 == "t").unwrap().1 as usize, offset_of!(CountedPixel, t));
@@ -192,6 +206,7 @@ fn struct_layouts_agree() {
         stack_size: 32,
         software_threads: 0,
         textures: false,
+        leaf_order: false,
     };
     let module = &check(&assemble(&staged)).unwrap();
     same_layout!(module, "Waiting", WaitingPath, [origin, pixel, direction, weight, colour]);
@@ -211,6 +226,7 @@ fn struct_layouts_agree() {
         stack_size: 8,
         software_threads: 0,
         textures: false,
+        leaf_order: false,
     };
     let module = &check(&assemble(&kernel)).unwrap();
     same_layout!(module, "GivenRay", TraceRay, [origin, direction]);

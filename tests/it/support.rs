@@ -92,7 +92,7 @@ pub fn gpu() -> Option<&'static VulkanDevice> {
     gpu
 }
 
-/// A device of one's own that was opened with more features than usual; without a device that has them, says so and
+/// A device of one's own that was opened with these features and no others; without a device that has them, says so and
 /// returns nothing.
 pub fn gpu_with(features: Features) -> Option<VulkanDevice> {
     let all = adapters_with(features);
@@ -114,6 +114,11 @@ pub fn gpu_with(features: Features) -> Option<VulkanDevice> {
 /// A device of one's own, with or without wgpu's shader checks.
 pub fn own_gpu(checked: bool) -> Option<VulkanDevice> {
     open(VulkanOptions { checked, ..VulkanOptions::default() })
+}
+
+/// A device of one's own.
+pub fn gpu_of(options: VulkanOptions) -> Option<VulkanDevice> {
+    open(options)
 }
 
 /// A file below the folder named by an environment variable; without it, says so and returns nothing.

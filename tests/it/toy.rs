@@ -98,7 +98,7 @@ impl Input for Numbers<'_> {
         Key { workload: INFO.name.into(), axes: case.axes.clone(), inputs }
     }
 
-    fn build(&mut self, case: &Case) -> Result<u64> {
+    fn build(&mut self, case: &Case, _: &Device) -> Result<u64> {
         match case.group.as_str() {
             "huge" => Err(Error::too_large("the table", "1 TiB is needed, 1 GiB is there", "use loop")),
             _ => Ok(8 * self.n),

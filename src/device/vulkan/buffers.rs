@@ -108,7 +108,8 @@ impl VulkanDevice {
 
     /// The most bytes that can be bound as one buffer.
     pub fn max_binding(&self) -> u64 {
-        self.limits.max_storage_buffer_binding_size.min(self.limits.max_buffer_size)
+        let limits = &self.limits;
+        limits.max_storage_buffer_binding_size.min(limits.max_buffer_size).min(self.options().max_binding)
     }
 
     /// The most bytes that a kernel can declare as one `var<uniform>`.
@@ -157,7 +158,7 @@ impl VulkanDevice {
     }
 
     /// A buffer with contents. (wgpu's `create_buffer_init` panics on a lost device.)
-    fn filled(&self, what: &str, contents: &[u8], usage: wgpu::BufferUsages) -> Result<Buffer> {
+    pub(super) fn filled(&self, what: &str, contents: &[u8], usage: wgpu::BufferUsages) -> Result<Buffer> {
         let buffer = self.buffer(what, contents.len() as u64, usage | wgpu::BufferUsages::COPY_DST)?;
         self.queue.write_buffer(&buffer.buffer, 0, contents);
         self.check()?;

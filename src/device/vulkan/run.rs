@@ -303,6 +303,18 @@ impl VulkanDevice {
         self.read(&resolved, count)
     }
 
+    /// Uploads something and waits until it is there; returns it with the time by the host's clock.
+    ///
+    /// # Errors
+    /// Those of the upload, and the device's.
+    pub fn time_upload<T>(&self, upload: impl FnOnce() -> Result<T>) -> Result<(T, Duration)> {
+        self.flush_uploads()?;
+        let start = Instant::now();
+        let uploaded = upload()?;
+        self.flush_uploads()?;
+        Ok((uploaded, start.elapsed()))
+    }
+
     /// Waits until everything that was uploaded is there: the first frame must not pay for it.
     fn flush_uploads(&self) -> Result<()> {
         let uploads = self.queue.submit([]);

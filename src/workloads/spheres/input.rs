@@ -89,7 +89,7 @@ impl Input for SpheresInput<'_> {
         self.totals.borrow_mut().entry(SpheresInput::shape_of(case)).or_insert(totals);
     }
 
-    fn build(&mut self, case: &Case) -> Result<u64> {
+    fn build(&mut self, case: &Case, _: &Device) -> Result<u64> {
         let SpheresCase { renderer, precision, .. } = SpheresCase::parse(case)?;
         if precision == Precision::F16 && !matches!(renderer, Renderer::Sequential | Renderer::Gpu) {
             let problem = format!("{} has no half precision: sequential and gpu have", renderer.name());

@@ -111,7 +111,7 @@ impl<'a> SplatInput<'a> {
         }
         let scene = unlit.scene.clone();
         let selection = Selection::parse(REFERENCE_TREE)?;
-        let reference = Arc::new(trace_input::build(&selection, &scene, context)?);
+        let reference = Arc::new(trace_input::build(&selection, &scene, context, None)?);
         Ok(SplatInput {
             context,
             cpu: CpuDevice::new(context.settings.threads)?,
@@ -280,10 +280,10 @@ impl Input for SplatInput<'_> {
         }
     }
 
-    fn build(&mut self, case: &Case) -> Result<u64> {
+    fn build(&mut self, case: &Case, device: &Device) -> Result<u64> {
         let selection = Selection::parse(&case.group)?;
         if self.of_selection(&selection).is_err() {
-            let built = trace_input::build(&selection, self.scene(), self.context)?;
+            let built = trace_input::build(&selection, self.scene(), self.context, Some(device))?;
             self.built.insert(selection.build_key(), Arc::new(built));
         }
         let built = self.of_selection(&selection)?;

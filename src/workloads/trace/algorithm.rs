@@ -1,12 +1,14 @@
 //! What is registered: builders, traversals, and the algorithms that `--structure` names, each a pair of both.
 
 use super::cpu::Twin;
+use super::method::Group;
 use super::options::OptionInfo;
 use super::selection::Selection;
 use super::structure::{Structure, StructureKind};
-use crate::device::Features;
+use crate::device::{Features, Interrupted, VulkanDevice};
 use crate::error::Result;
 use crate::scene::Scene;
+use crate::workloads::trace::build::gpu::BuildTimes;
 use crate::workloads::trace::common::estimate::Estimate;
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
@@ -44,7 +46,12 @@ pub struct Builder {
     pub build: fn(&Selection, &Scene) -> Result<Made>,
     /// Estimates its memory before it is built, where that is possible.
     pub estimate: Option<fn(&Selection, &Scene) -> Result<Estimate>>,
+    /// Builds the same bytes on a device, where it can.
+    pub on_device: Option<OnDevice>,
 }
+
+/// Builds a structure on a device; `None` for options with which it is built on the CPU alone.
+pub type OnDevice = fn(&Selection, &Scene, &VulkanDevice, Interrupted) -> Result<Option<(Made, BuildTimes)>>;
 
 /// What a builder makes.
 pub struct Made {
@@ -73,6 +80,10 @@ pub struct Traversal {
     pub slots: fn(&Parameters) -> &'static [(&'static str, &'static str)],
     /// True where the rays of a work-group go together, so that its shape decides what is counted.
     pub cooperative: bool,
+    /// True if it may read triangles in leaf order ([`super::method::TriangleLayout`]).
+    pub leaf_order: bool,
+    /// Where primary rays go in packets of a subgroup, in a pass of their own: the pixels of a work-group of that pass.
+    pub packets: Option<fn(&Parameters) -> Group>,
     /// What the kernel demands of a device.
     pub needs: Features,
     /// How exactly its hits agree with those of other traversals.
@@ -114,6 +125,8 @@ impl Traversal {
         parameters: |_| Parameters::NONE,
         slots: |_| &[],
         cooperative: false,
+        leaf_order: false,
+        packets: None,
         needs: Features::of(&[]),
         agreement: Agreement::Exact,
         twin: None,

@@ -12,7 +12,7 @@ use std::path::Path;
 pub type Row<'a> = (&'a Artifact, &'a Input);
 
 /// Columns of `structures.csv`: empty where one has no meaning for a structure.
-const COLUMNS: [&str; 23] = [
+const COLUMNS: [&str; 27] = [
     "scene",
     "structure",
     "variant",
@@ -29,6 +29,10 @@ const COLUMNS: [&str; 23] = [
     "sah_cost",
     "build_ms",
     "build_threads",
+    "build_stages_ms",
+    "build_upload_ms",
+    "upload_ms",
+    "driver_build_ms",
     "structure_bytes",
     "geometry_bytes",
     "thesis_bytes",
@@ -47,7 +51,7 @@ pub fn rows(journal: &Journal) -> Vec<Row<'_>> {
 fn value((artifact, scene): Row, column: &str) -> Option<Value> {
     let of = |metrics: &[Metric]| metric(metrics, None, column).cloned();
     let places = match column {
-        "build_ms" => 3,
+        "build_ms" | "build_upload_ms" | "upload_ms" | "driver_build_ms" => 3,
         _ => 4,
     };
     match column {
@@ -55,11 +59,19 @@ fn value((artifact, scene): Row, column: &str) -> Option<Value> {
         "structure" => Some(artifact.key.axis("structure").into()),
         "variant" => Some(variant_of(&artifact.key).into()),
         "note" => Some(artifact.note.as_str().into()),
+        "build_stages_ms" => stages(&artifact.metrics).map(Value::from),
         _ => match of(&artifact.metrics).or_else(|| of(&scene.metrics))? {
             Value::Number(number) => Some(Value::Number(round(number, places))),
             other => Some(other),
         },
     }
+}
+
+/// The stages of a build on a device with their milliseconds; `None` for one on the CPU.
+fn stages(metrics: &[Metric]) -> Option<String> {
+    let of = metrics.iter().filter(|metric| metric.name == "build_ms");
+    let stages = of.filter_map(|m| Some(format!("{} {}", m.of.as_ref()?, round(m.value.number()?, 3))));
+    Some(stages.collect::<Vec<_>>().join(", ")).filter(|text| !text.is_empty())
 }
 
 /// As CSV, with a header.

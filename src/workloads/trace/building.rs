@@ -1,6 +1,7 @@
 //! Building a structure so that Ctrl-C need not wait for it. A builder cannot be interrupted, so it runs on its own
-//! thread, and after Ctrl-C that thread is abandoned.
+//! thread, and after Ctrl-C that thread is abandoned. What is built on a device is interrupted between its passes.
 
+use crate::device::VulkanDevice;
 use crate::error::{Error, Result};
 use crate::record::statistics;
 use crate::scene::Scene;
@@ -25,14 +26,50 @@ pub fn build_repeatedly(
     times: usize,
     interrupted: Interrupted,
 ) -> Result<Built> {
-    let mut built = build(selection, scene, threads, interrupted)?;
-    let mut build_ms = vec![built.build_ms];
+    repeatedly(times, || build(selection, scene, threads, interrupted))
+}
+
+/// The same on a device, where the builder can; the stages are those of the build with the median time. `None` where
+/// it builds on the CPU alone.
+///
+/// # Errors
+/// The builder's, the device's, and [`Error::Interrupted`].
+pub fn build_repeatedly_on(
+    device: &VulkanDevice,
+    selection: &Selection,
+    scene: &Scene,
+    times: usize,
+    interrupted: Interrupted,
+) -> Result<Option<Built>> {
+    let build = || {
+        if interrupted() {
+            return Err(Error::Interrupted);
+        }
+        selection.build_on(scene, device, interrupted)
+    };
+    let Some(first) = build()? else { return Ok(None) };
+    let mut first = Some(first);
+    let next = || {
+        let built = first.take().map_or_else(build, |built| Ok(Some(built)))?;
+        built.ok_or_else(|| Error::Device(format!("{} was built on the device only once", selection.name())))
+    };
+    repeatedly(times, next).map(Some)
+}
+
+fn repeatedly(times: usize, mut build: impl FnMut() -> Result<Built>) -> Result<Built> {
+    let mut built = build()?;
+    let mut taken = vec![(built.build_ms, built.device_times.clone())];
     for _ in 1..times {
         drop(built);
-        built = build(selection, scene, threads, interrupted)?;
-        build_ms.push(built.build_ms);
+        built = build()?;
+        taken.push((built.build_ms, built.device_times.clone()));
     }
+    let build_ms: Vec<f64> = taken.iter().map(|(ms, _)| *ms).collect();
     built.build_ms = statistics::median(&build_ms).unwrap_or(built.build_ms);
+    if built.device_times.is_some() {
+        taken.sort_by(|a, b| a.0.total_cmp(&b.0));
+        (built.build_ms, built.device_times) = taken.swap_remove((taken.len() - 1) / 2);
+    }
     Ok(built)
 }
 

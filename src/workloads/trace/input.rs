@@ -12,7 +12,7 @@ use crate::camera::{CameraPath, View};
 use crate::device::Device;
 use crate::error::{Error, Result};
 use crate::harness::workload::{Case, Context, Event, Input, Run};
-use crate::record::row::{Artifact, Input as InputRecord, Key, Row, Status};
+use crate::record::row::{Artifact, Input as InputRecord, Key, Metric, Row, Status};
 use crate::scene::{self, Scene};
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -72,7 +72,7 @@ impl<'a> TraceInput<'a> {
             }
         }
         let selection = Selection::parse("bvh")?;
-        let reference = Arc::new(build(&selection, &scene, context)?);
+        let reference = Arc::new(build(&selection, &scene, context, None)?);
         Ok(TraceInput {
             context,
             decorate,
@@ -152,10 +152,10 @@ impl Input for TraceInput<'_> {
         }
     }
 
-    fn build(&mut self, case: &Case) -> Result<u64> {
+    fn build(&mut self, case: &Case, device: &Device) -> Result<u64> {
         let selection = Selection::parse(&case.group)?;
         if self.of_selection(&selection).is_none() {
-            let built = build(&selection, &self.scene, self.context)?;
+            let built = build(&selection, &self.scene, self.context, Some(device))?;
             self.built.insert(selection.build_key(), Arc::new(built));
         }
         // On the device once for each traversal, and the geometry with it
@@ -192,14 +192,27 @@ impl Input for TraceInput<'_> {
     }
 }
 
-/// Builds a structure as often as the settings say; its time is the median.
+/// Builds a structure as often as the settings say; its time is the median. It is built on the device where its builder
+/// can do that, otherwise on the CPU.
 ///
 /// # Errors
-/// Those of [`Selection::build`], [`Error::Interrupted`].
-pub fn build(selection: &Selection, scene: &Arc<Scene>, context: &Context) -> Result<Built> {
+/// Those of [`Selection::build`] and [`Selection::build_on`], [`Error::Interrupted`].
+pub fn build(selection: &Selection, scene: &Arc<Scene>, context: &Context, device: Option<&Device>) -> Result<Built> {
     context.emit(Event::Building(format!("building {} of {}", selection.name(), scene.name)));
-    let settings = context.settings;
-    let built = building::build_repeatedly(selection, scene, settings.threads, settings.builds, context.interrupted)?;
+    let (settings, interrupted) = (context.settings, context.interrupted);
+    let on_device = match device {
+        Some(Device::Vulkan(device)) => {
+            building::build_repeatedly_on(device, selection, scene, settings.builds, interrupted)?
+        }
+        _ => None,
+    };
+    let on_cpu = || building::build_repeatedly(selection, scene, settings.threads, settings.builds, interrupted);
+    let built = on_device.map_or_else(on_cpu, Ok)?;
+    if built.device_times.is_some() {
+        // What a device computed is trusted no more than what a file holds
+        let broken = |why: String| Error::Device(format!("{} is not valid: {why}", selection.name()));
+        built.structure.validate(scene).map_err(broken)?;
+    }
     if !built.note.is_empty() {
         context.emit(Event::Note(format!("{} {}: {}", scene.name, selection.name(), built.note)));
     }
@@ -243,6 +256,10 @@ pub fn artifact(
     key.axes.extend(selection.option_axes().map(|(axis, options)| (axis.to_owned(), options)));
     key.inputs.insert("scene".into(), record.hash.clone());
     let (properties, memory) = (built.structure.properties(scene), memory(built, scene, allocated));
-    let metrics = structure_metrics(&properties, memory, built.build_ms, built.build_threads);
+    let mut metrics = structure_metrics(&properties, memory, built.build_ms, built.build_threads);
+    if let Some(times) = &built.device_times {
+        metrics.push(Metric::new("build_upload_ms", times.upload_ms));
+        metrics.extend(times.stages.iter().map(|&(stage, ms)| Metric::of(stage, "build_ms", ms)));
+    }
     Artifact { key, metrics, note: built.note.clone() }
 }

@@ -1,11 +1,13 @@
 //! One structure as a user selects it, and what it takes to build it.
 
+use crate::device::{Interrupted, VulkanDevice};
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::threads;
 use crate::workloads::trace::algorithm::{Algorithm, Made};
+use crate::workloads::trace::build::gpu::BuildTimes;
 use crate::workloads::trace::intersect::TriangleTest;
-use crate::workloads::trace::method::{Fetch, Group, Method, Pattern, Reflections, ShadowRays};
+use crate::workloads::trace::method::{Fetch, Group, Method, Pattern, Reflections, ShadowRays, TriangleLayout};
 use crate::workloads::trace::options::{Axis, OptionInfo};
 use crate::workloads::trace::registry::algorithms;
 use crate::workloads::trace::structure::Structure;
@@ -27,8 +29,10 @@ pub struct Built {
     pub structure: Arc<dyn Structure>,
     /// Wall-clock time, in milliseconds, from the scene's triangles to the finished structure.
     pub build_ms: f64,
-    /// Threads that the builder could use.
+    /// Threads that the builder could use; 0 for a structure that was built on a device.
     pub build_threads: usize,
+    /// Of a structure that was built on a device; its build time is their total.
+    pub device_times: Option<BuildTimes>,
     /// How it was built where not as selected; empty otherwise.
     pub note: String,
 }
@@ -177,6 +181,11 @@ impl Selection {
                 "textures" => Fetch::Textures,
                 _ => Fetch::Auto,
             },
+            triangles: match self.value("triangles") {
+                "indexed" => TriangleLayout::Indexed,
+                "leaf-order" => TriangleLayout::LeafOrder,
+                _ => TriangleLayout::Auto,
+            },
         }
     }
 
@@ -193,8 +202,22 @@ impl Selection {
             let start = Instant::now();
             let Made { structure, note } = (self.info().builder.build)(self, scene)?;
             let build_ms = start.elapsed().as_secs_f64() * 1e3;
-            Ok(Built { structure, build_ms, build_threads: rayon::current_num_threads(), note })
+            let build_threads = rayon::current_num_threads();
+            Ok(Built { structure, build_ms, build_threads, device_times: None, note })
         })
+    }
+
+    /// Builds the structure on a device; `None` where its builder works on the CPU alone.
+    pub fn build_on(&self, scene: &Scene, device: &VulkanDevice, interrupted: Interrupted) -> Result<Option<Built>> {
+        let Some(on_device) = self.info().builder.on_device else { return Ok(None) };
+        let built = on_device(self, scene, device, interrupted)?.map(|(Made { structure, note }, times)| Built {
+            structure,
+            build_ms: times.total_ms,
+            build_threads: 0,
+            device_times: Some(times),
+            note,
+        });
+        Ok(built)
     }
 
     /// The value of an option; `None` if the algorithm has no such option.

@@ -23,6 +23,7 @@ static BUILDER: Builder = Builder {
         Ok(Made::of(build::build(scene, &build::Config { max_leaf: selection.size("max_leaf") })?))
     },
     estimate: None,
+    on_device: None,
 };
 
 /// Greatest depth of a tree. Traversals size their stacks by [`Bih::depth`].

@@ -39,6 +39,7 @@ static TOP_DOWN: Builder = Builder {
     purpose: |_| "",
     build: |s, scene| options::build(s, scene).map(made),
     estimate: Some(estimate),
+    on_device: Some(options::build_on_device),
 };
 
 /// PLOC with reinsertion, by obvhs.
@@ -49,6 +50,7 @@ static PLOC: Builder = Builder {
     purpose: |_| "",
     build: |s, scene| build_ploc(s, scene).map(made),
     estimate: None,
+    on_device: None,
 };
 
 fn made((bvh, note): (Bvh, String)) -> Made {

@@ -3,8 +3,12 @@
 use super::spatial::SpatialConfig;
 use super::spatial_bins::MAX_SPATIAL_BINS;
 use super::{Bvh, DEPTH_LIMIT, build, build_ploc, ploc, sweep};
+use crate::device::{Interrupted, VulkanDevice};
 use crate::error::Result;
 use crate::scene::Scene;
+use crate::workloads::trace::algorithm::Made;
+use crate::workloads::trace::build::gpu::{self, BuildTimes};
+use crate::workloads::trace::build::{lbvh, ploc as clusters};
 use crate::workloads::trace::common::sah::CostModel;
 use crate::workloads::trace::options::{Axis, Kind, OptionInfo};
 use crate::workloads::trace::selection::Selection;
@@ -13,15 +17,18 @@ const BINNED: &str = "binned";
 const SWEEP: &str = "sweep";
 const SPATIAL: &str = "spatial";
 const PLOC: &str = "ploc";
+const LBVH: &str = "lbvh";
+const PLOC_PASSES: &str = "ploc-passes";
 
 pub(in crate::workloads::trace) const OPTIONS: &[OptionInfo] = &[
     OptionInfo::new(
         Axis::Build,
         "build",
         BINNED,
-        "splits between bins of centroids, between any two triangles (sweep), or also through triangles (spatial); or \
-         obvhs's clustering (ploc)",
-        Kind::Word(&[BINNED, SWEEP, SPATIAL, PLOC]),
+        "splits between bins of centroids, between any two triangles (sweep), or also through triangles (spatial); \
+         obvhs's clustering (ploc); in passes on the device: by the bits of Morton codes (lbvh), or by merging neighbours \
+         (ploc-passes)",
+        Kind::Word(&[BINNED, SWEEP, SPATIAL, PLOC, LBVH, PLOC_PASSES]),
     ),
     OptionInfo::new(Axis::Build, "bins", "16", "bins per axis", Kind::Count(2, 32)).idle_if(is_not_binned),
     OptionInfo::new(Axis::Build, "max_leaf", "4", "split until at most so many triangles", Kind::Count(1, 15))
@@ -33,7 +40,7 @@ pub(in crate::workloads::trace) const OPTIONS: &[OptionInfo] = &[
         "cost of a traversal step: with it, nodes within max_leaf are split, too, where that is cheaper; inf: never",
         Kind::Number(0.0, f64::INFINITY),
     )
-    .idle_if(has_preset),
+    .idle_if(has_no_splits),
     OptionInfo::new(Axis::Build, "ki", "1", "cost of a triangle test", Kind::Number(1e-6, 1e6)).idle_if(no_costs),
     OptionInfo::new(
         Axis::Build,
@@ -50,7 +57,7 @@ pub(in crate::workloads::trace) const OPTIONS: &[OptionInfo] = &[
         "axes on which splits are looked for: all, or the longest of the node's box",
         Kind::Word(&["all", "longest"]),
     )
-    .idle_if(has_all_axes),
+    .idle_if(has_no_choice_of_axes),
     OptionInfo::new(
         Axis::Build,
         "max_depth",
@@ -58,7 +65,7 @@ pub(in crate::workloads::trace) const OPTIONS: &[OptionInfo] = &[
         "greatest depth, near which nodes are halved; stacks are sized by the depth of the tree that was built",
         Kind::Count(1, DEPTH_LIMIT),
     )
-    .idle_if(has_preset),
+    .idle_if(has_no_splits),
     OptionInfo::new(
         Axis::Build,
         "alpha",
@@ -91,6 +98,14 @@ pub(in crate::workloads::trace) const OPTIONS: &[OptionInfo] = &[
         Kind::Word(&["above", "below"]),
     )
     .idle_if(is_not_spatial),
+    OptionInfo::new(
+        Axis::Build,
+        "radius",
+        "16",
+        "places on the Morton curve within which a cluster looks for its best partner",
+        Kind::Count(1, 64),
+    )
+    .idle_if(is_no_clustering),
     PRESET.idle_if(has_no_preset),
 ];
 
@@ -110,12 +125,28 @@ fn no_costs(s: &Selection) -> Option<String> {
     (s.value("kt") == "inf").then(|| "costs are compared only with kt".to_owned())
 }
 
-fn has_all_axes(s: &Selection) -> Option<String> {
-    match s.value("build") {
-        BINNED => Some(format!("build={BINNED} has bins on all axes")),
-        PLOC => Some(format!("build={PLOC} looks for no splits")),
-        _ => None,
-    }
+/// True for builders that work in passes over all triangles, on a device or by their twins.
+fn works_in_passes(s: &Selection) -> bool {
+    [LBVH, PLOC_PASSES].contains(&s.value("build"))
+}
+
+fn has_no_splits(s: &Selection) -> Option<String> {
+    let is_clustered = works_in_passes(s) || s.value("build") == PLOC;
+    is_clustered.then(|| format!("build={} looks for no splits", s.value("build")))
+}
+
+fn is_no_clustering(s: &Selection) -> Option<String> {
+    let build = s.value("build");
+    (build != PLOC_PASSES).then(|| format!("build={build} merges no clusters"))
+}
+
+fn clustering(s: &Selection) -> clusters::Config {
+    clusters::Config { radius: s.size("radius") as u32, max_leaf: s.size("max_leaf") as u32 }
+}
+
+fn has_no_choice_of_axes(s: &Selection) -> Option<String> {
+    let is_binned = s.value("build") == BINNED;
+    is_binned.then(|| format!("build={BINNED} has bins on all axes")).or_else(|| has_no_splits(s))
 }
 
 fn is_not_binned(s: &Selection) -> Option<String> {
@@ -141,6 +172,11 @@ pub(in crate::workloads::trace) fn build(s: &Selection, scene: &Scene) -> Result
     }
     let cost = CostModel { traversal: s.number("kt"), intersection: s.number("ki") };
     let (max_leaf, max_depth) = (s.size("max_leaf"), s.size("max_depth") as u32);
+    match s.value("build") {
+        LBVH => return Ok((lbvh::build(scene, max_leaf as u32)?, String::new())),
+        PLOC_PASSES => return Ok((clusters::build(scene, &clustering(s))?, String::new())),
+        _ => {}
+    }
     if s.value("build") == BINNED {
         let config = build::Config { bins: s.size("bins"), max_leaf, cost, max_depth };
         return Ok((build::build(scene, &config)?, String::new()));
@@ -155,4 +191,19 @@ pub(in crate::workloads::trace) fn build(s: &Selection, scene: &Scene) -> Result
     let longest_axis = s.value("axes") == "longest";
     let config = sweep::Config { max_leaf, cost, max_depth, sorting, longest_axis, spatial };
     Ok((sweep::build(scene, &config)?, String::new()))
+}
+
+/// Builds on a device what is built in passes.
+pub(super) fn build_on_device(
+    s: &Selection,
+    scene: &Scene,
+    device: &VulkanDevice,
+    interrupted: Interrupted,
+) -> Result<Option<(Made, BuildTimes)>> {
+    let (bvh, times) = match s.value("build") {
+        LBVH => gpu::lbvh::build(device, scene, s.size("max_leaf") as u32, interrupted)?,
+        PLOC_PASSES => gpu::ploc::build(device, scene, &clustering(s), interrupted)?,
+        _ => return Ok(None),
+    };
+    Ok(Some((Made::of(bvh), times)))
 }

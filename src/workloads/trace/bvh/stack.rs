@@ -46,6 +46,7 @@ pub static STACK: Traversal = Traversal {
         let bvh: &Bvh = input.structure()?;
         Ok(input.with(StackSearch::new(&input, InPairs(bvh))))
     }),
+    leaf_order: true,
     ..Traversal::INDEPENDENT
 };
 

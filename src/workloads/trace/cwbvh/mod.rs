@@ -31,6 +31,7 @@ static BUILDER: Builder = Builder {
         Ok(Made { structure: Arc::new(tree), note })
     },
     estimate: None,
+    on_device: None,
 };
 
 const PLOC: &str = "ploc";

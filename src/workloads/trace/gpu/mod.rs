@@ -31,3 +31,11 @@ impl Backend for VulkanDevice {
         Ok(Box::new(prepared::GpuPrepared::new(self, scene, structure, method)?))
     }
 }
+
+/// Milliseconds until the nodes and triangle references of a structure are on a device, by the host's clock.
+///
+/// # Errors
+/// [`crate::Error::Refused`] if it does not fit the device's limits, or the device's.
+pub fn upload_ms(device: &VulkanDevice, scene: &Scene, structure: &dyn Structure, method: Method) -> Result<f64> {
+    Ok(upload::Uploaded::new(device, scene, structure, method)?.structure_time.as_secs_f64() * 1e3)
+}

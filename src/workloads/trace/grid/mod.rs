@@ -26,6 +26,7 @@ static BUILDER: Builder = Builder {
     purpose: |_| "",
     build: |selection, scene| Ok(Made::of(build::build(scene, &config(selection))?)),
     estimate: Some(|selection, scene| estimate::estimate(scene, &config(selection))),
+    on_device: None,
 };
 
 const CELLS: Kind = Kind::CountOrAuto(1, 1 << 20);

@@ -38,6 +38,7 @@ static BUILDER: Builder = Builder {
     purpose: |s| if has_ropes(s) { "ropes" } else { "" },
     build: build_selected,
     estimate: Some(estimate),
+    on_device: None,
 };
 
 const OPTIONS: &[OptionInfo] = &[

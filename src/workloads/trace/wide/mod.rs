@@ -45,7 +45,15 @@ static BVH4_BUILDER: Builder = Builder { purpose, ..builder("bvh4", |s, scene| b
 static BVH8_BUILDER: Builder = Builder { purpose, ..builder("bvh8", |s, scene| build(s, scene, 8)) };
 
 const fn builder(name: &'static str, build: fn(&Selection, &Scene) -> Result<Made>) -> Builder {
-    Builder { name, options: bvh::options::OPTIONS, parallel: true, purpose: |_| "", build, estimate: None }
+    Builder {
+        name,
+        options: bvh::options::OPTIONS,
+        parallel: true,
+        purpose: |_| "",
+        build,
+        estimate: None,
+        on_device: None,
+    }
 }
 
 /// Where the children of a node lie.

@@ -1,0 +1,27 @@
+// The binary radix tree over sorted keys (Karras 2012, section 4). Inner node i has triangle i at one end of its range.
+// Twin: src/workloads/trace/build/tree.rs.
+
+@group(0) @binding(1) var<storage, read> keys: array<u32>; // sorted
+
+// Bits that two keys have in common, or of equal keys their places; -1 outside of all keys.
+fn common_bits(key: u32, i: i32, j: i32) -> i32 {
+    if (j < 0 || j >= i32(job.leaves)) {
+        return -1;
+    }
+    let other = keys[j];
+    if (key == other) {
+        return 32 + i32(countLeadingZeros(u32(i ^ j)));
+    }
+    return i32(countLeadingZeros(key ^ other));
+}
+
+struct Side {
+    step: i32,  // towards the other end of the range
+    least: i32, // a key has more bits than this in common with all others of the range, and with no other
+}
+
+fn side_of(key: u32, i: i32) -> Side {
+    let after = common_bits(key, i, i + 1);
+    let before = common_bits(key, i, i - 1);
+    return Side(select(-1, 1, after > before), min(after, before));
+}
