@@ -41,6 +41,7 @@ pub static STACK: Traversal = Traversal {
         let widening = Widening::around(&input, root);
         Ok(input.with(CwbvhStack { triangles: input.triangles(), tree, root, widening }))
     }),
+    leaf_order: true,
     ..Traversal::INDEPENDENT
 };
 

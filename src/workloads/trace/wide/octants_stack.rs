@@ -19,6 +19,7 @@ pub static OCTANTS4: Traversal = Traversal {
     structure: &FOUR,
     parameters: |s| Parameters::of(&[("WIDTH", Parameter::Word(4)), widened::parameter(s)]),
     twin: Some(TWIN),
+    leaf_order: true,
     ..Traversal::INDEPENDENT
 };
 

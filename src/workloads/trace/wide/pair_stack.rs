@@ -27,6 +27,7 @@ pub static PAIR_STACK: Traversal = Traversal {
         let tree: &Wide = input.structure()?;
         Ok(input.with(StackSearch::new(&input, InPairs(tree))))
     }),
+    leaf_order: true,
     ..Traversal::INDEPENDENT
 };
 

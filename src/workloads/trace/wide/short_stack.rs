@@ -29,6 +29,7 @@ pub static SHORT4: Traversal = Traversal {
     structure: &FOUR,
     parameters: |s| parameters(s, 4),
     twin: Some(TWIN),
+    leaf_order: true,
     ..Traversal::INDEPENDENT
 };
 

@@ -84,6 +84,7 @@ pub static STACK4: Traversal = Traversal {
     structure: &FOUR,
     parameters: |s| parameters(s).and("WIDTH", Parameter::Word(4)),
     twin: Some(TWIN),
+    leaf_order: true,
     ..Traversal::INDEPENDENT
 };
 
