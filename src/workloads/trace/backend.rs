@@ -249,9 +249,4 @@ pub trait Prepared {
     /// Bytes allocated on the device for geometry (vertices, materials, lights) and for the structure (nodes and
     /// triangle references), in this order.
     fn allocated(&self) -> (u64, u64);
-
-    /// What else is known of the structure once it is on the device.
-    fn artifact_metrics(&self) -> Vec<Metric> {
-        Vec::new()
-    }
 }

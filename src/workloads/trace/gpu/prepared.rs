@@ -6,7 +6,7 @@ use super::rendering::{Part, entries_of, stages};
 use super::upload::Uploaded;
 use crate::camera::View;
 use crate::device::VulkanDevice;
-use crate::device::vulkan::{AccelerationStructure, Bindings, Buffer, Pipeline, PipelineDescription, Resource};
+use crate::device::vulkan::{Bindings, Buffer, Pipeline, PipelineDescription, Resource};
 use crate::error::{Error, Result};
 use crate::math::{Hit, T_MAX};
 use crate::record::row::Metric;

@@ -21,4 +21,5 @@ static BUILDER: Builder = Builder {
     purpose: |_| "",
     build: |_, scene| Ok(Made::of(build::build(scene)?)),
     estimate: None,
+    on_device: None,
 };
