@@ -56,3 +56,21 @@ fn wide_trees_visit_fewer_nodes_and_test_more_boxes() {
         assert!(quantised.steps() * 100 <= stack.steps() * 102, "{name}: {stack:?} {quantised:?}");
     }
 }
+
+/// With few entries a ray comes back to nodes, but visits the same leaves in the same order.
+#[test]
+fn a_short_stack_costs_visits_of_inner_nodes_only() {
+    let cpu = CpuBackend::new(2).unwrap();
+    let scene = load("hall:triangles=20000").unwrap();
+    for tree in ["bvh4", "bvh8"] {
+        let full = counted(&cpu, &scene, tree);
+        let short =
+            ["1", "4", "16"].map(|entries| counted(&cpu, &scene, &format!("{tree}:stack=short,entries={entries}")));
+        assert_eq!(full.restarts, 0);
+        assert!(short[0].restarts > short[1].restarts && short[1].restarts >= short[2].restarts, "{tree}: {short:?}");
+        for sums in &short {
+            assert_eq!((sums.leaves, sums.tests), (full.leaves, full.tests), "{tree}");
+        }
+        assert!(short[0].inner > full.inner && short[0].inner > short[1].inner, "{tree}: {full:?} {short:?}");
+    }
+}
