@@ -7,6 +7,7 @@ pub mod octants;
 mod octants_stack;
 pub mod pair_stack;
 mod quantise;
+mod short_stack;
 pub mod stack;
 
 pub use layout::{Slot, Wide, WideUniform};
