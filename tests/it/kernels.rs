@@ -9,11 +9,13 @@ use rtbench::workloads::trace::backend::TraceRay;
 use rtbench::workloads::trace::backend::{Config, CountedPixel, Counters, Pixel};
 use rtbench::workloads::trace::bih::{BihNode, BihUniform};
 use rtbench::workloads::trace::brute::BruteUniform;
+use rtbench::workloads::trace::cwbvh::{CwNode, CwbvhUniform};
 use rtbench::workloads::trace::gpu::kernels::{self, Entry, Kernel, StagedPass};
 use rtbench::workloads::trace::gpu::{CastJob, FrameUniform, WaitingPath};
 use rtbench::workloads::trace::grid::GridUniform;
 use rtbench::workloads::trace::grid::octants::Octant;
 use rtbench::workloads::trace::kdtree::{KdTreeUniform, RopeLeaf};
+use rtbench::workloads::trace::wide::{Slot, WideUniform};
 use rtbench::workloads::trace::{Method, Selection, algorithms};
 use std::mem::offset_of;
 
@@ -80,6 +82,14 @@ fn every_variant_is_valid() {
         "bvh-stack:build=spatial,cull=off",
         "bvh:build=spatial",
         "bvh-stack:reflections=staged",
+        "bvh-quantised:cull=off",
+        "bvh-quantised:build=spatial",
+        "bvh4:order=octant",
+        "bvh8:order=octant",
+        "bvh8:build=spatial,order=octant",
+        "bvh4:stack=short",
+        "bvh8:stack=short,entries=16",
+        "cwbvh:build=spatial",
     ];
     for text in special {
         assert!(kernels.iter().any(|kernel| kernel.method == method(text)), "{text} is not checked");
@@ -224,6 +234,8 @@ fn struct_layouts_agree() {
     same_layout!(module, "Job", CastJob, [rays, row_groups, limit, pad]);
     same_layout!(module, "KdTree", KdTreeUniform, [bounds_min, bounds_max]);
     same_layout!(&render("bih", false), "Bih", BihUniform, [bounds_min, bounds_max]);
+    same_layout!(&render("bvh8", false), "Wide", WideUniform, [bounds_min, root, bounds_max, axes, lo, step]);
+    same_layout!(&render("cwbvh", false), "Cwbvh", CwbvhUniform, [bounds_min, root, bounds_max]);
     // Rows of 16 bytes, of which kernels read whole ones
     let rows =
         [offset_of!(RopeLeaf, min), offset_of!(RopeLeaf, max), offset_of!(RopeLeaf, low), offset_of!(RopeLeaf, high)];
@@ -237,4 +249,14 @@ fn struct_layouts_agree() {
 fn nodes_of_a_bih_are_packed() {
     assert_eq!(size_of::<BihNode>(), 12);
     assert_eq!([offset_of!(BihNode, link), offset_of!(BihNode, words)], [0, 4]);
+}
+
+/// Kernels read a child as one texel, and a node of a CWBVH as five.
+#[test]
+fn nodes_of_wide_trees_are_packed() {
+    assert_eq!([offset_of!(Slot, min), offset_of!(Slot, max), offset_of!(Slot, reference)], [0, 6, 12]);
+    assert_eq!([size_of::<Slot>(), size_of::<CwNode>()], [16, 80]);
+    let links = [offset_of!(CwNode, exponents), offset_of!(CwNode, inner), offset_of!(CwNode, first_child)];
+    assert_eq!(links, [12, 15, 16]);
+    assert_eq!([offset_of!(CwNode, first_ref), offset_of!(CwNode, meta), offset_of!(CwNode, planes)], [20, 24, 32]);
 }

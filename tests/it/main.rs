@@ -36,3 +36,4 @@ mod toy; // a workload of a few lines on the harness
 mod traversal; // every traversal against brute force, CPU twins and GPU
 mod verify; // the verifier notices one wrong pixel
 mod watertight; // no ray is lost at edges, on lattices, from afar
+mod wide; // what wide trees cost rays, counted over frames

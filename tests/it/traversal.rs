@@ -83,7 +83,7 @@ fn names() -> Vec<&'static str> {
 }
 
 /// Ways to walk a structure other than each one's own.
-const OTHERS: [&str; 46] = [
+const OTHERS: [&str; 65] = [
     "kdtree:search=restart",
     "kdtree:search=pushdown",
     "kdtree:stack=1",
@@ -132,6 +132,25 @@ const OTHERS: [&str; 46] = [
     "bvh:fetch=textures",
     "bvh-stack:fetch=textures",
     "bih:fetch=textures",
+    "bvh-quantised:cull=off",
+    "bvh-quantised:build=spatial,max_leaf=1,alpha=0",
+    "bvh4:order=octant",
+    "bvh4:build=spatial,max_leaf=3",
+    "bvh8:order=octant",
+    "bvh8:cull=off",
+    "bvh8:build=ploc,preset=slow",
+    "bvh8:build=spatial,max_leaf=1,alpha=0,order=octant",
+    "cwbvh:build=binned",
+    "cwbvh:build=spatial",
+    "cwbvh:preset=slow",
+    "bvh-quantised:fetch=buffers",
+    "bvh8:fetch=buffers",
+    "bvh8:order=octant,fetch=buffers",
+    "cwbvh:fetch=buffers",
+    "bvh4:stack=short,entries=1",
+    "bvh4:stack=short,entries=3",
+    "bvh8:stack=short",
+    "bvh8:build=spatial,max_leaf=1,alpha=0,stack=short,entries=2",
 ];
 
 pub fn all_names() -> Vec<&'static str> {

@@ -1,4 +1,5 @@
-// Two children a node: what loops over pairs read, as from trace/bvh/node.wgsl. Twin: src/workloads/trace/wide/layout.rs.
+// Two children a node: what loops over pairs read, as from trace/bvh/node.wgsl. Twin:
+// src/workloads/trace/wide/layout.rs.
 
 //!include trace/wide/node.wgsl
 

@@ -13,6 +13,7 @@ pub mod common;
 pub mod count;
 pub mod counting;
 mod cpu;
+pub mod cwbvh;
 pub mod given;
 pub mod gpu;
 pub mod grid;

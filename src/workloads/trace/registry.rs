@@ -1,7 +1,7 @@
 //! The names of `--structure`, in the order of tables.
 
 use super::algorithm::Algorithm;
-use super::{bih, brute, bvh, grid, kdtree, query, subgroup, wide};
+use super::{bih, brute, bvh, cwbvh, grid, kdtree, query, subgroup, wide};
 
 static ALGORITHMS: &[&Algorithm] = &[
     &grid::dda::GRID,
@@ -17,6 +17,7 @@ static ALGORITHMS: &[&Algorithm] = &[
     &wide::pair_stack::BVH_QUANTISED,
     &wide::stack::BVH4,
     &wide::stack::BVH8,
+    &cwbvh::stack::CWBVH,
     &subgroup::BVH_SUBGROUP,
 ];
 

@@ -271,7 +271,9 @@ impl Kernel {
 pub fn methods() -> Vec<Method> {
     let mut methods = Vec::new();
     let mut add = |text: &str| {
-        let method = Selection::parse(text).expect("options and values of the table").method();
+        // An option that has no effect without others is refused
+        let Ok(selection) = Selection::parse(text) else { return };
+        let method = selection.method();
         if !methods.contains(&method) {
             methods.push(method);
         }
@@ -282,8 +284,19 @@ pub fn methods() -> Vec<Method> {
             option.examples().iter().for_each(|value| add(&format!("{}:{}={value}", algorithm.name, option.key)));
         }
     }
-    // What a traversal does otherwise in trees with clipped boxes
-    ["bvh:build=spatial", "bvh-stack:build=spatial", "bvh-stack:build=spatial,cull=off"].into_iter().for_each(&mut add);
+    // What a traversal does otherwise in trees with clipped boxes, and options that need others
+    let special = [
+        "bvh:build=spatial",
+        "bvh-stack:build=spatial",
+        "bvh-stack:build=spatial,cull=off",
+        "bvh-quantised:build=spatial",
+        "bvh8:build=spatial",
+        "bvh8:build=spatial,order=octant",
+        "bvh4:stack=short,entries=1",
+        "bvh8:stack=short,entries=16",
+        "cwbvh:build=spatial",
+    ];
+    special.into_iter().for_each(&mut add);
     let of_kernels = |option: &&OptionInfo| option.axis == Axis::Rays || option.key == "reflections";
     for option in COMMON_OPTIONS.iter().filter(of_kernels) {
         option.examples().iter().for_each(|value| add(&format!("bvh-stack:{}={value}", option.key)));

@@ -20,8 +20,8 @@ pub const MAX_WIDTH: usize = 8;
 /// What a node costs besides its area, as a share of the root's.
 const NODE: f32 = 1.0e-7;
 
-/// A BVH with at most `width` children a node: 2, 4 or 8. Its leaves are those of the BVH, in their order. Children come
-/// first in their node, or with `octants` lie where [`super::octants`] puts them.
+/// A BVH with at most `width` children a node: 2, 4 or 8. Its leaves are those of the BVH, in their order. Children
+/// come first in their node, or with `octants` lie where [`super::octants`] puts them.
 pub fn collapse(bvh: Bvh, width: usize, octants: bool) -> Wide {
     let axes = octants.then(|| octants::axes(width, bvh.bounds));
     let planes = Planes::around(bvh.bounds, u16::MAX);

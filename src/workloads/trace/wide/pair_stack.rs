@@ -1,5 +1,5 @@
-//! BVH with quantised boxes, one ray at a time with a private stack: the loops of [`crate::workloads::trace::bvh::stack`].
-//! Twin of `kernels/trace/wide/pair_stack.wgsl`.
+//! BVH with quantised boxes, one ray at a time with a private stack: the loops of
+//! [`crate::workloads::trace::bvh::stack`]. Twin of `kernels/trace/wide/pair_stack.wgsl`.
 
 use super::{PAIRS, QUANTISED, Slot, Wide};
 use crate::workloads::trace::algorithm::{Algorithm, Traversal};

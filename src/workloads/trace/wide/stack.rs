@@ -5,6 +5,7 @@
 //! equal distances the earlier slot comes first.
 
 use super::octants_stack::{OCTANTS4, OCTANTS8};
+use super::short_stack::{MAX_ENTRIES, SHORT4, SHORT8};
 use super::{BVH4_BUILDER, BVH8_BUILDER, EIGHT, FOUR, Wide, has_octants};
 use crate::math::{Ray, ray_box};
 use crate::workloads::trace::algorithm::{Algorithm, Parameter, Traversal};
@@ -12,6 +13,7 @@ use crate::workloads::trace::bvh::stack::{CULL, Down, EMPTY, LEAF, Stack, StackS
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::cpu::Twin;
 use crate::workloads::trace::options::{Axis, GROUP, Kind, OptionInfo};
+use crate::workloads::trace::selection::Selection;
 use glam::Vec3A;
 
 const PAPER: &str = "Wald, Benthin and Boulos 2008; Ylitie, Karras and Laine 2017";
@@ -23,7 +25,7 @@ pub static BVH4: Algorithm = Algorithm {
     summary: "the BVH of bvh-stack collapsed to four children a node, 16 bits a plane, a stack per ray",
     paper: PAPER,
     builder: &BVH4_BUILDER,
-    traversal: |s| if has_octants(s) { &OCTANTS4 } else { &STACK4 },
+    traversal: |s| traversal(s, [&STACK4, &SHORT4, &OCTANTS4]),
     options: OPTIONS,
 };
 
@@ -34,9 +36,21 @@ pub static BVH8: Algorithm = Algorithm {
     summary: "the BVH of bvh-stack collapsed to eight children a node, 16 bits a plane, a stack per ray",
     paper: PAPER,
     builder: &BVH8_BUILDER,
-    traversal: |s| if has_octants(s) { &OCTANTS8 } else { &STACK8 },
+    traversal: |s| traversal(s, [&STACK8, &SHORT8, &OCTANTS8]),
     options: OPTIONS,
 };
+
+fn traversal(s: &Selection, [full, short, octants]: [&'static Traversal; 3]) -> &'static Traversal {
+    match (has_octants(s), has_short_stack(s)) {
+        (true, _) => octants,
+        (false, true) => short,
+        (false, false) => full,
+    }
+}
+
+fn has_short_stack(s: &Selection) -> bool {
+    s.value("stack") == "short"
+}
 
 const OPTIONS: &[OptionInfo] = &[
     OptionInfo::new(
@@ -46,9 +60,23 @@ const OPTIONS: &[OptionInfo] = &[
         "which of the children that a ray meets is next: the nearest, or the first by the signs of its direction",
         Kind::Word(&["distance", "octant"]),
     ),
-    CULL.idle_if(|s| has_octants(s).then(|| "order=octant keeps no distances".to_owned())),
+    OptionInfo::new(
+        Axis::Traversal,
+        "stack",
+        "full",
+        "room for all children that a ray meets, or for a few of them, with a trail from the root",
+        Kind::Word(&["full", "short"]),
+    )
+    .idle_if(keeps_no_distances),
+    OptionInfo::new(Axis::Traversal, "entries", "8", "entries of the short stack", Kind::Count(1, MAX_ENTRIES))
+        .idle_if(|s| keeps_no_distances(s).or((!has_short_stack(s)).then(|| "stack=full has room for all".to_owned()))),
+    CULL.idle_if(|s| keeps_no_distances(s).or(has_short_stack(s).then(|| "stack=short always culls".to_owned()))),
     GROUP,
 ];
+
+fn keeps_no_distances(s: &Selection) -> Option<String> {
+    has_octants(s).then(|| "order=octant keeps no distances".to_owned())
+}
 
 /// Depth first, nearest child first, in trees of four children a node.
 pub static STACK4: Traversal = Traversal {
