@@ -3,7 +3,6 @@
 mod packet;
 
 use super::algorithm::{Algorithm, Builder, Parameter, Parameters, Traversal};
-use super::bvh;
 use super::bvh::widened;
 use super::cpu::Twin;
 use super::method::Group;
@@ -30,17 +29,12 @@ pub static BVH_SUBGROUP: Algorithm = Algorithm {
 };
 
 static BUILDER: Builder = Builder {
-    name: "bvh-subgroup",
-    options: bvh::options::OPTIONS,
-    parallel: true,
     purpose: |s| match width_of(s) {
         2 => "2",
         4 => "4",
         _ => "8",
     },
-    build: |s, scene| wide::build(s, scene, width_of(s) as usize),
-    estimate: None,
-    on_device: None,
+    ..wide::builder("bvh-subgroup", |s, scene| wide::build(s, scene, width_of(s) as usize))
 };
 
 const WIDTH: OptionInfo = OptionInfo::new(

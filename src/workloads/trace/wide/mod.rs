@@ -44,7 +44,10 @@ static QUANTISED: Builder = builder("bvh-quantised", |s, scene| build(s, scene, 
 static BVH4_BUILDER: Builder = Builder { purpose, ..builder("bvh4", |s, scene| build(s, scene, 4)) };
 static BVH8_BUILDER: Builder = Builder { purpose, ..builder("bvh8", |s, scene| build(s, scene, 8)) };
 
-const fn builder(name: &'static str, build: fn(&Selection, &Scene) -> Result<Made>) -> Builder {
+pub(in crate::workloads::trace) const fn builder(
+    name: &'static str,
+    build: fn(&Selection, &Scene) -> Result<Made>,
+) -> Builder {
     Builder {
         name,
         options: bvh::options::OPTIONS,
