@@ -17,15 +17,21 @@ fn read_box(triangle: u32) -> Box {
     return Box(lo, vec3<u32>(boxes[i + 3u], boxes[i + 4u], boxes[i + 5u]));
 }
 
+// As many steps for every node: branches would cost a software driver more than what they leave out.
+fn leaf_box(first: u32, last: u32) -> Box {
+    var box = NOTHING;
+    for (var k = 0u; k < job.max_leaf; k += 1u) {
+        box = around(box, read_box(order[min(first + k, last)]));
+    }
+    return box;
+}
+
 fn child(slot: u32, node: u32, first: u32, last: u32) -> u32 {
     let count = last - first + 1u;
+    let box = leaf_box(first, last);
     if (count > job.max_leaf) {
         slots[ranks[node]] = slot;
         return 1u;
-    }
-    var box = NOTHING;
-    for (var i = first; i <= last; i += 1u) {
-        box = around(box, read_box(order[i]));
     }
     nodes[slot * 2u] = vec4<u32>(floats(box.lo), first);
     nodes[slot * 2u + 1u] = vec4<u32>(floats(box.hi), count);

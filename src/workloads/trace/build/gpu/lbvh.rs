@@ -13,6 +13,7 @@ use crate::workloads::trace::build::Input;
 use crate::workloads::trace::bvh::{Bvh, BvhNode};
 
 const TREE: Stage = Stage("tree");
+const NODES: Stage = Stage("nodes");
 const REFIT: Stage = Stage("refit");
 
 /// Levels of inner nodes, from the bottom up, that get their boxes in a pass of their own. Of a usual tree hardly any
@@ -60,7 +61,7 @@ pub fn build(
     let job = Job { max_leaf, leaves: curve.count, ..job };
     let Curve { keys, boxes, order, .. } = &curve;
     let bound = [keys, boxes, &nodes, &slots, &waiting, &lengths, &lists[0], order, &ranks, &kept_nodes];
-    passes.add(TREE, Kernel::Nodes, groups, job, &bound.map(Resource::from))?;
+    passes.add(NODES, Kernel::Nodes, groups, job, &bound.map(Resource::from))?;
     for level in 0..=LEVELS {
         let [list, next] = [level, level + 1].map(|level| &lists[level as usize % 2]);
         let bound = [list, &heights, &nodes, &slots, &waiting, &lengths, next].map(Resource::from);
