@@ -13,7 +13,7 @@ use rtbench::workloads::trace::Selection;
 use std::hint::black_box;
 use std::time::Duration;
 
-const STRUCTURES: [&str; 14] = [
+const STRUCTURES: [&str; 20] = [
     "grid",
     "kdtree",
     "kdtree:build=sort",
@@ -28,6 +28,12 @@ const STRUCTURES: [&str; 14] = [
     "bvh:build=spatial,max_leaf=3",
     "bih",
     "ploc-stack",
+    "bvh-quantised",
+    "bvh4",
+    "bvh8",
+    "bvh8:build=ploc",
+    "cwbvh",
+    "cwbvh:build=binned",
 ];
 
 fn build(c: &mut Criterion) {

@@ -26,7 +26,7 @@ use std::time::Instant;
 /// Milliseconds of one frame.
 type Contestant<'a> = (String, Box<dyn FnMut() -> f64 + 'a>);
 
-const STRUCTURES: [&str; 9] = [
+const STRUCTURES: [&str; 16] = [
     "bvh-stack",
     "bvh-stack:build=sweep,max_leaf=3",
     "bvh-stack:build=sweep,max_leaf=3,cull=off",
@@ -36,6 +36,13 @@ const STRUCTURES: [&str; 9] = [
     "kdtree:build=sort",
     "kdtree:build=sort,search=stack",
     "kdtree:build=sort,search=ropes",
+    "bvh-quantised",
+    "bvh4",
+    "bvh8",
+    "bvh8:order=octant",
+    "bvh8:stack=short",
+    "bvh8:build=ploc",
+    "cwbvh",
 ];
 
 fn main() {

@@ -2,14 +2,14 @@
 //! `cargo bench --bench scan`. Each scan reads the words twice and writes them once.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use rtbench::device::vulkan::{Selector, VulkanOptions, adapters_with, choose};
-use rtbench::device::{Feature, Features, Frame, Stage, Submissions, VulkanDevice};
+use rtbench::device::vulkan::{Selector, VulkanOptions, adapters, choose};
+use rtbench::device::{Feature, Frame, Stage, Submissions, VulkanDevice};
 use rtbench::workloads::scan::{self, Options, Scan};
 
 const LENGTHS: [u32; 3] = [1 << 16, 1 << 20, 1 << 23];
 
 fn scans(criterion: &mut Criterion) {
-    let all = adapters_with(Features::of(&[Feature::Subgroups]));
+    let all = adapters();
     let best = choose(&all, &Selector::Best);
     let device = match best.and_then(|best| VulkanDevice::open(best, VulkanOptions::default())) {
         Ok(device) => Some(device),

@@ -100,6 +100,9 @@ fn traversals(c: &mut Criterion, name: &str, scene: &Scene, size: u32) {
     let given: Vec<GivenRay> = rays.iter().map(ray).collect();
     for algorithm in algorithms().iter().filter(|algorithm| algorithm.name != "brute") {
         let selection = Selection::parse(algorithm.name).expect("a name of the table");
+        if selection.method().traversal.twin.is_none() {
+            continue;
+        }
         let built = selection.build(scene, 0).expect("builds");
         let mut twin = cpu.prepare(scene, &*built.structure, selection.method()).expect("fits");
         group.bench_function(algorithm.name, |b| b.iter(|| black_box(twin.trace(&given, false).expect("traces"))));

@@ -36,14 +36,7 @@ fn store(path: u32, position: vec4<f32>, direction: vec4<f32>, flux: vec4<f32>) 
     }
 }
 
-fn cosine_direction(normal: vec3<f32>, vector: vec3<f32>) -> vec3<f32> {
-    let sum = normal + vector;
-    let square = dot3(sum, sum);
-    if (square < 1.0e-12) {
-        return normal;
-    }
-    return sum / sqrt(square);
-}
+//!include lib/cosine_direction.wgsl
 
 // True if the path hits something.
 fn follow(index: u32) -> bool {

@@ -46,9 +46,9 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     } else {
         let triangle_ref = nearest_hit(ray, alive);
         if (triangle_ref != MISS && alive) {
-            let r = read_triangle_ref(triangle_ref);
-            let found = surface_hit(ray, read_position(r.x), read_position(r.y), read_position(r.z));
-            hit = GivenHit(found.t, r.w);
+            let corners = read_corners(triangle_ref);
+            let found = surface_hit(ray, corners.a, corners.b, corners.c);
+            hit = GivenHit(found.t, corners.triangle);
         }
     }
     if (index < job.rays) {

@@ -1,5 +1,6 @@
 // What a pixel's path is made of: primary rays, and one segment with its surface and its light. The entry files
-// trace/render.wgsl and trace/staged/*.wgsl put segments together. Twin: src/workloads/trace/path.rs.
+// trace/render.wgsl and trace/staged/*.wgsl, and trace/secondary/*.wgsl, put segments together. Twin:
+// src/workloads/trace/path.rs.
 //
 // Specialised by SHADOWS and BOUNCES (ray configurations P, PS, PSR), by the traversal, by counting or not, and by what
 // src/workloads/trace/method.rs lists.
@@ -32,7 +33,7 @@ struct Frame {
     height: u32,          // of the image
     shadow_reach: f32,    // how far from a point shadow rays from a light start at most
     part: u32,            // number of this band among all of its upload
-    pad: u32,
+    ambient_reach: f32,   // how far from a surface an ambient ray reaches
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -137,6 +138,24 @@ fn start_path(place: vec2<u32>) -> Path {
     return Path(ray, is_in_band(place), vec3<f32>(0.0, 0.0, 0.0), 1.0, MISS, T_MAX);
 }
 
+// The surface at a segment's nearest hit. A path whose ray misses shows the background and is done.
+fn surface_of(kind: u32, path: ptr<function, Path>, triangle_ref: u32) -> Surface {
+    var surface: Surface;
+    if ((*path).alive) {
+        if (triangle_ref == MISS) {
+            (*path).colour += frame.background * (*path).weight;
+            (*path).alive = false;
+        } else {
+            surface = surface_at((*path).ray, triangle_ref, frame.epsilon);
+            if (kind == PRIMARY) {
+                (*path).first_triangle = surface.triangle;
+                (*path).first_t = surface.t;
+            }
+        }
+    }
+    return surface;
+}
+
 // Traces the segment of rays of this kind, adds its light, and makes the mirrored ray the next one. Whole work-groups
 // call it together. False if nothing of the work-group was hit.
 fn follow(kind: u32, path: ptr<function, Path>) -> bool {
@@ -149,21 +168,11 @@ fn follow(kind: u32, path: ptr<function, Path>) -> bool {
 // The same for a segment whose nearest hit is known.
 fn follow_hit(kind: u32, path: ptr<function, Path>, triangle_ref: u32) -> bool {
     let ray = (*path).ray;
-
-    // Make it a surface; a ray that misses shows the background and is done
-    var surface: Surface;
+    let surface = surface_of(kind, path, triangle_ref);
+    var ambient: vec4<f32>; // colour and reflectivity
     if ((*path).alive) {
-        if (triangle_ref == MISS) {
-            (*path).colour += frame.background * (*path).weight;
-            (*path).alive = false;
-        } else {
-            surface = surface_at(ray, triangle_ref, frame.epsilon);
-            if (kind == PRIMARY) {
-                (*path).first_triangle = surface.triangle;
-                (*path).first_t = surface.t;
-            }
-            (*path).colour += materials[surface.material].ambient * (*path).weight;
-        }
+        ambient = read_ambient(surface.material);
+        (*path).colour += ambient.xyz * (*path).weight;
     }
     if (!group_any((*path).alive)) {
         return false;
@@ -171,7 +180,7 @@ fn follow_hit(kind: u32, path: ptr<function, Path>, triangle_ref: u32) -> bool {
 
     // Add the light of every lamp that is seen from there
     for (var i = 0u; i < frame.light_count; i += 1u) {
-        let light = lights[frame.first_light + i];
+        let light = read_light(frame.first_light + i);
         var lit = (*path).alive;
         if (SHADOWS) {
             // Between light and point, of which one is at distance 0 and the other at distance 1
@@ -191,9 +200,8 @@ fn follow_hit(kind: u32, path: ptr<function, Path>, triangle_ref: u32) -> bool {
 
     // Go on in the mirror
     if (BOUNCES > 0u && (*path).alive) {
-        let reflectivity = materials[surface.material].reflectivity;
-        (*path).alive = reflectivity > 0.0;
-        (*path).weight = (*path).weight * reflectivity;
+        (*path).alive = ambient.w > 0.0;
+        (*path).weight = (*path).weight * ambient.w;
         (*path).ray = reflected_ray(surface, ray.direction);
     }
     return true;

@@ -4,6 +4,9 @@
 
 //!include trace/path.wgsl
 
+// shade_primary(place, &path, triangle_ref): what follows from the nearest hit of a primary ray
+//!slot secondary
+
 @compute @workgroup_size(GROUP_SIZE)
 fn main(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -12,11 +15,10 @@ fn main(
     lane = local_index;
     let place = place_in_band(group);
     var path = start_path(place);
-    for (var bounce = 0u; bounce <= BOUNCES; bounce += 1u) {
-        if (!group_any(path.alive) || !follow(select(REFLECTED, PRIMARY, bounce == 0u), &path)) {
-            break;
-        }
+    if (path.alive) {
+        begin_ray(PRIMARY);
     }
+    shade_primary(place, &path, nearest_hit(path.ray, path.alive));
     if (is_in_band(place)) {
         store(pixel_index(place), path.first_triangle, path.first_t, rgba8(path.colour));
     }

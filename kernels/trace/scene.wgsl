@@ -21,9 +21,21 @@ struct Light {
 
 // The structure's own uniform is at binding 7, declared by its folder.
 
-// read_vertex, read_position, read_triangle_ref (three vertices and the triangle's index), and for a structure's nodes
-// read_node16 or read_node8
+// read_position, read_normal, read_triangle_ref (three vertices and the triangle's index), read_corner_texel, for a
+// structure's nodes read_node16 or read_node8, and for shading read_ambient, read_material, read_triangle_material,
+// read_light
 //!slot memory
+
+// The corners of a triangle.
+struct Corners {
+    a: vec3<f32>,
+    b: vec3<f32>,
+    c: vec3<f32>,
+    triangle: u32, // index in the scene
+}
+
+// read_corners, read_triangle_index and read_material_index of a triangle reference
+//!slot triangles
 
 // The nearest hit so far. Of equal distances the lower triangle index wins, so that the order of tests does not matter.
 struct Best {
@@ -33,10 +45,10 @@ struct Best {
 
 // Replaces `best` by a hit that is nearer.
 fn test_triangle(ray: Ray, triangle_ref: u32, best: ptr<function, Best>) {
-    let r = read_triangle_ref(triangle_ref);
-    let hit = intersect(ray, read_position(r.x), read_position(r.y), read_position(r.z));
+    let corners = read_corners(triangle_ref);
+    let hit = intersect(ray, corners.a, corners.b, corners.c);
     if (hit.t <= (*best).t) {
-        if (hit.t < (*best).t || has_lower_index(r.w, (*best).triangle_ref)) {
+        if (hit.t < (*best).t || has_lower_index(corners.triangle, (*best).triangle_ref)) {
             *best = Best(hit.t, triangle_ref);
         }
     }
@@ -44,7 +56,7 @@ fn test_triangle(ray: Ray, triangle_ref: u32, best: ptr<function, Best>) {
 
 // True if triangle `index` comes before the one of the best hit; nothing exactly at the limit is a hit.
 fn has_lower_index(index: u32, best: u32) -> bool {
-    return best != MISS && index < read_triangle_ref(best).w;
+    return best != MISS && index < read_triangle_index(best);
 }
 
 // Tests the triangles of a leaf or cell for the nearest hit; with `any`, only up to the first one that is hit. True if
@@ -66,8 +78,8 @@ fn test_triangles(ray: Ray, first: u32, count: u32, any: bool, best: ptr<functio
 
 // True if the triangle is hit at a distance below `limit`.
 fn triangle_occludes(ray: Ray, triangle_ref: u32, limit: f32) -> bool {
-    let r = read_triangle_ref(triangle_ref);
-    let hit = intersect(ray, read_position(r.x), read_position(r.y), read_position(r.z));
+    let corners = read_corners(triangle_ref);
+    let hit = intersect(ray, corners.a, corners.b, corners.c);
     return hit.t < limit;
 }
 

@@ -1,9 +1,5 @@
 // Phong shading. Twin: src/workloads/trace/shade.rs.
 
-@group(0) @binding(3) var<storage, read> materials: array<Material>;
-@group(0) @binding(4) var<storage, read> triangle_materials: array<u32>;
-@group(0) @binding(5) var<storage, read> lights: array<Light>;
-
 // A hit point, ready to be lit.
 struct Surface {
     t: f32,
@@ -17,28 +13,26 @@ struct Surface {
 // The traversal returned only which triangle reference was hit; distance and barycentric coordinates are computed anew,
 // which costs less than carrying them through the traversal in registers.
 fn surface_at(ray: Ray, triangle_ref: u32, epsilon: f32) -> Surface {
+    let corners = read_corners(triangle_ref);
     let r = read_triangle_ref(triangle_ref);
-    let a = read_vertex(r.x);
-    let b = read_vertex(r.y);
-    let c = read_vertex(r.z);
-    let hit = surface_hit(ray, a.position.xyz, b.position.xyz, c.position.xyz);
-    var geometric_normal = normalize3(cross3(b.position.xyz - a.position.xyz, c.position.xyz - a.position.xyz));
+    let hit = surface_hit(ray, corners.a, corners.b, corners.c);
+    var geometric_normal = normalize3(cross3(corners.b - corners.a, corners.c - corners.a));
     geometric_normal = geometric_normal * select(1.0, -1.0, dot3(geometric_normal, ray.direction) > 0.0);
-    var normal = a.normal.xyz * hit.w + b.normal.xyz * hit.u + c.normal.xyz * hit.v;
+    var normal = read_normal(r.x) * hit.w + read_normal(r.y) * hit.u + read_normal(r.z) * hit.v;
     if (dot3(normal, normal) < 1.0e-12) {
         normal = geometric_normal; // opposite normals cancelled, or the file's were zero
     } else {
         normal = normalize3(normal);
         normal = normal * select(1.0, -1.0, dot3(normal, geometric_normal) < 0.0);
     }
-    let on_triangle = a.position.xyz * hit.w + b.position.xyz * hit.u + c.position.xyz * hit.v;
+    let on_triangle = corners.a * hit.w + corners.b * hit.u + corners.c * hit.v;
     let point = on_triangle + geometric_normal * epsilon;
-    return Surface(hit.t, r.w, triangle_materials[r.w], point, geometric_normal, normal);
+    return Surface(hit.t, r.w, read_material_index(triangle_ref), point, geometric_normal, normal);
 }
 
 // Diffuse and specular light from one point light.
 fn phong(surface: Surface, light: Light, view: vec3<f32>) -> vec3<f32> {
-    let material = materials[surface.material];
+    let material = read_material(surface.material);
     let to_light = normalize3(light.position.xyz - surface.point);
     let cosine = dot3(surface.normal, to_light);
     if (cosine <= 0.0) {

@@ -1,11 +1,11 @@
-// Output of the counting kernels: 136 bytes a pixel.
+// Output of the counting kernels: 216 bytes a pixel.
 
 struct CountedPixel {
     triangle: u32,
     rgba: u32,
     t: u32, // bits
     pad: u32,
-    counters: array<Counters, 3>,
+    counters: array<Counters, RAY_TYPES>,
 }
 
 @group(0) @binding(8) var<storage, read_write> pixels: array<CountedPixel>;

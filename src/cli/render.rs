@@ -28,7 +28,7 @@ pub struct Arguments {
     #[arg(long, value_name = "NAME[:KEY=VALUE,..]", default_value = "bvh-stack")]
     structure: String,
     /// Ray configuration
-    #[arg(long, value_name = "P|PS|PSR", default_value = "PSR")]
+    #[arg(long, value_name = "P|PS|PSR|AO|DIFFUSE", default_value = "PSR")]
     config: String,
     /// Image size in pixels
     #[arg(long, value_name = "N|WxH", default_value = "512")]

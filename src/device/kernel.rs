@@ -2,7 +2,8 @@
 //! done here, in text. A line map turns naga's lines back into files and lines.
 //!
 //! A line `//!include FILE` takes a file once; a line `//!slot NAME` takes the file that the caller chose for this
-//! name. The constants go before everything else but lines that begin with `enable`, which WGSL wants first.
+//! name. Lines between `//!repeat COUNT NAME` and `//!end` are taken as often as the constant COUNT says, with 0, 1, 2 ..
+//! in place of `{NAME}`: drivers keep arrays in registers only where all indices are constants. The constants go before everything else but lines that begin with `enable`, which WGSL wants first.
 
 use super::tokens::tokens;
 use std::fmt::Write;
@@ -97,6 +98,14 @@ pub fn assemble(
     Ok(assembly.source)
 }
 
+/// Lines that are repeated.
+struct Repeated {
+    count: u32,
+    /// What the number takes the place of.
+    placeholder: String,
+    lines: Vec<(&'static str, usize)>,
+}
+
 struct Assembly<'a> {
     files: &'static [KernelFile],
     slots: &'a [(&'a str, &'a str)],
@@ -125,8 +134,26 @@ impl Assembly<'_> {
             return Ok(());
         }
         self.included.push(name);
+        let mut repeated: Option<Repeated> = None;
         for (index, text) in text.lines().enumerate() {
-            if let Some(included) = text.strip_prefix("//!include ") {
+            let instruction = text.trim_start();
+            if let Some(asked) = instruction.strip_prefix("//!repeat ") {
+                repeated =
+                    Some(self.repeated(asked).ok_or_else(|| {
+                        format!("kernels/{name}:{}: no count and name to repeat by: {asked}", index + 1)
+                    })?);
+            } else if instruction == "//!end" {
+                let Some(Repeated { count, placeholder, lines }) = repeated.take() else {
+                    return Err(format!("kernels/{name}:{}: nothing is repeated here", index + 1));
+                };
+                for number in 0..count {
+                    for (line, place) in &lines {
+                        self.push(&line.replace(&placeholder, &number.to_string()), name, *place);
+                    }
+                }
+            } else if let Some(repeated) = &mut repeated {
+                repeated.lines.push((text, index + 1));
+            } else if let Some(included) = text.strip_prefix("//!include ") {
                 self.include(included.trim(), name, index + 1)?;
             } else if let Some(slot) = text.strip_prefix("//!slot ") {
                 let slot = slot.trim();
@@ -138,7 +165,19 @@ impl Assembly<'_> {
                 self.push(text, name, index + 1);
             }
         }
-        Ok(())
+        match repeated {
+            Some(_) => Err(format!("kernels/{name}: the last //!repeat has no //!end")),
+            None => Ok(()),
+        }
+    }
+
+    /// The count is the value of a constant of type `u32`.
+    fn repeated(&self, asked: &str) -> Option<Repeated> {
+        let (constant, name) = asked.trim().split_once(' ')?;
+        let value =
+            |line: &str| line.strip_prefix(&format!("const {constant}: u32 = "))?.strip_suffix("u;")?.parse().ok();
+        let count = self.source.text.lines().find_map(value)?;
+        Some(Repeated { count, placeholder: format!("{{{name}}}"), lines: Vec::new() })
     }
 }
 
@@ -167,6 +206,30 @@ mod tests {
         assert_eq!(source.text, text);
         assert_eq!(source.locate(4), "kernels/buffers.wgsl:2");
         assert_eq!(source.locate(9), "line 9 of the assembled kernel");
+    }
+
+    #[test]
+    fn repeated_lines_are_located() {
+        let file = |text: &'static str| -> &'static [KernelFile] { vec![("main.wgsl", text)].leak() };
+        let assemble = |text| {
+            let mut constants = Constants::default();
+            constants.unsigned("ROWS", 2);
+            assemble(file(text), "main.wgsl", &[], constants)
+        };
+        let source = assemble("fn f() {\n    //!repeat ROWS k\n    a[{k}] = {k}u;\n    //!end\n}\n").unwrap();
+        let text = "const ROWS: u32 = 2u;\nfn f() {\n    a[0] = 0u;\n    a[1] = 1u;\n}\n";
+        assert_eq!(source.text, text);
+        assert_eq!(
+            [3, 4, 5].map(|line| source.locate(line)),
+            ["kernels/main.wgsl:3", "kernels/main.wgsl:3", "kernels/main.wgsl:5"]
+        );
+        for (text, problem) in [
+            ("//!repeat LANES k\n//!end\n", "kernels/main.wgsl:1: no count and name to repeat by: LANES k"),
+            ("//!repeat ROWS k\n", "kernels/main.wgsl: the last //!repeat has no //!end"),
+            ("\n//!end\n", "kernels/main.wgsl:2: nothing is repeated here"),
+        ] {
+            assert_eq!(assemble(text).unwrap_err(), problem);
+        }
     }
 
     #[test]

@@ -11,6 +11,7 @@ pub mod rt2;
 pub mod runs;
 pub mod spheres;
 pub mod splat;
+pub mod structures;
 pub mod thesis;
 
 use crate::error::{Error, Result};
@@ -21,7 +22,7 @@ use claims::Finding;
 use convention::Convention;
 
 /// All sources.
-pub const ALL: [&Source; 4] = [&thesis::SOURCE, &rt2::SOURCE, &spheres::SOURCE, &splat::SOURCE];
+pub const ALL: [&Source; 5] = [&thesis::SOURCE, &rt2::SOURCE, &spheres::SOURCE, &splat::SOURCE, &structures::SOURCE];
 
 /// A source.
 pub struct Source {
@@ -31,7 +32,7 @@ pub struct Source {
     pub title: &'static str,
     /// The numbers of its tables, in its order.
     pub tables: &'static [&'static str],
-    /// Where its published numbers come from: a sentence in HTML.
+    /// Where its published numbers come from: a sentence in HTML; empty if it has none.
     pub published_in: &'static str,
     /// The devices whose times it published, the one of most tables first.
     pub devices: &'static [&'static str],
@@ -108,7 +109,10 @@ pub struct Options {
 /// [`Error::Input`]: there is no such source, or none fits.
 pub fn select(names: &[String], runs: &[RecordedRun]) -> Result<Vec<&'static Source>> {
     if names.is_empty() {
-        let fitting: Vec<_> = ALL.into_iter().filter(|source| runs.is_empty() || (source.fits)(runs)).collect();
+        let fitting: Vec<_> = ALL
+            .into_iter()
+            .filter(|source| if runs.is_empty() { !source.published_in.is_empty() } else { (source.fits)(runs) })
+            .collect();
         if fitting.is_empty() {
             let hint = format!("--source takes {}", list(ALL.iter().map(|source| source.name)));
             return Err(Error::argument("RUN", "no source has tables of what these runs measured", hint));

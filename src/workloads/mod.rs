@@ -1,6 +1,7 @@
 //! What rtbench can measure: one folder per workload, and one line in [`ALL`].
 
 pub mod kernel_files;
+pub mod random;
 pub mod scan;
 pub mod size;
 pub mod spheres;

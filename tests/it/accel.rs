@@ -3,6 +3,7 @@
 
 mod bih;
 mod broken;
+mod broken_wide;
 mod degenerate;
 mod kdtree_sort;
 mod passes;
@@ -12,6 +13,7 @@ mod selections;
 mod spatial;
 mod sweep;
 mod thesis;
+mod wide;
 
 use glam::Vec3;
 use proptest::prelude::*;
@@ -21,7 +23,7 @@ use rtbench::workloads::trace::{Selection, Structure};
 use std::sync::Arc;
 
 /// Every builder, with options that lead through other code.
-pub const SELECTIONS: [&str; 46] = [
+pub const SELECTIONS: [&str; 63] = [
     "grid",
     "grid:factor=1",
     "grid:x=5",
@@ -64,6 +66,23 @@ pub const SELECTIONS: [&str; 46] = [
     "bih:max_leaf=1",
     "bih:max_leaf=15",
     "brute",
+    "bvh:build=ploc",
+    "bvh-quantised",
+    "bvh-quantised:build=spatial,max_leaf=1,alpha=0",
+    "bvh4",
+    "bvh4:order=octant",
+    "bvh8",
+    "bvh8:max_leaf=1",
+    "bvh8:order=octant",
+    "bvh8:build=spatial,max_leaf=3",
+    "bvh8:build=ploc",
+    "bvh8:build=ploc,preset=very-slow",
+    "cwbvh",
+    "cwbvh:preset=fastest",
+    "cwbvh:preset=slow",
+    "cwbvh:build=binned",
+    "cwbvh:build=binned,max_leaf=1",
+    "cwbvh:build=spatial",
     "bvh:build=lbvh",
     "bvh:build=lbvh,max_leaf=1",
     "bvh:build=ploc-passes",

@@ -8,7 +8,7 @@ use rtbench::record::row::{Metric, SCHEMA, Samples, Settings, Status, TimingSour
 use rtbench::record::run::{DeviceRecord, Environment, PlanRecord, Provenance};
 use rtbench::workloads::trace::backend::{Config, CountedPixel, Pixel, Prepared, Size, Timed, TraceRay};
 use rtbench::workloads::trace::record::{
-    ConfigurationRecord, CounterSums, Memory, SceneRecord, StructureRecord, WORKLOAD,
+    ConfigurationRecord, CounterSums, Memory, SceneRecord, StructureRecord, WORKLOAD, by_ray_type,
 };
 use rtbench::workloads::trace::{Selection, Trace};
 use rtbench::{Error, Result};
@@ -79,7 +79,7 @@ pub fn configuration(name: &str, config: Config) -> ConfigurationRecord {
         status: Status::Ok,
         verified: true,
         image_hash: Some("123".into()),
-        counters: Some([
+        counters: Some(by_ray_type([
             CounterSums {
                 rays: 100,
                 inner: 600,
@@ -91,7 +91,7 @@ pub fn configuration(name: &str, config: Config) -> ConfigurationRecord {
             },
             CounterSums { rays: 50, inner: 1, leaves: 1, tests: 100, pops: 0, restarts: 0, ..CounterSums::default() },
             CounterSums::default(),
-        ]),
+        ])),
         memory: Memory { structure_bytes: 100, geometry_bytes: 200, thesis_bytes: 300, rt2_bytes: 400 },
         build_ms: 1.25,
         build_threads: 1,

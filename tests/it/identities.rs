@@ -33,7 +33,7 @@ fn comments_do_not_make_a_cache_stale() {
 fn comments_do_not_make_another_kernel() {
     let entry = Entry::Render { config: Config::PSR, counting: false };
     let method = Selection::parse("bvh-stack").unwrap().method();
-    let kernel = Kernel { entry, method, stack_size: 32, software_threads: 0, textures: false };
+    let kernel = Kernel { entry, method, stack_size: 32, software_threads: 0, textures: false, leaf_order: false };
     let source = kernel.assemble().unwrap();
     let mut commented = source.clone();
     commented.text = source.text.replace(" // ", " // another word, ").replace(";\n", ";   // end\n\n");

@@ -145,6 +145,8 @@ fn no_registered_algorithm_and_no_kernel_file_is_left_out() {
         "trace/staged/update_timed.wgsl",
         "trace/kdtree/stack.wgsl",
         "trace/textures.wgsl",
+        "trace/wide/octants.wgsl",
+        "trace/wide/short_stack.wgsl",
     ];
     for (file, _) in kernels::FILES {
         assert!(

@@ -9,11 +9,13 @@ use rtbench::workloads::trace::backend::TraceRay;
 use rtbench::workloads::trace::backend::{Config, CountedPixel, Counters, Pixel};
 use rtbench::workloads::trace::bih::{BihNode, BihUniform};
 use rtbench::workloads::trace::brute::BruteUniform;
+use rtbench::workloads::trace::cwbvh::{CwNode, CwbvhUniform};
 use rtbench::workloads::trace::gpu::kernels::{self, Entry, Kernel, StagedPass};
 use rtbench::workloads::trace::gpu::{CastJob, FrameUniform, WaitingPath};
 use rtbench::workloads::trace::grid::GridUniform;
 use rtbench::workloads::trace::grid::octants::Octant;
 use rtbench::workloads::trace::kdtree::{KdTreeUniform, RopeLeaf};
+use rtbench::workloads::trace::wide::{Slot, WideUniform};
 use rtbench::workloads::trace::{Method, Selection, algorithms};
 use std::mem::offset_of;
 
@@ -32,10 +34,16 @@ fn check(source: &Source) -> Result<naga::Module, String> {
     };
     let module = naga::front::wgsl::parse_str(&source.text)
         .map_err(|e| format!("{}: {}", at(e.location(&source.text)), e.message()))?;
-    Validator::new(ValidationFlags::all(), Capabilities::empty())
+    Validator::new(ValidationFlags::all(), Capabilities::RAY_QUERY)
         .validate(&module)
         .map_err(|e| format!("{}: {:?}", at(e.location(&source.text)), e.into_inner()))?;
     Ok(module)
+}
+
+/// Kernels of a method.
+fn variants(method: &Method) -> usize {
+    let staged = if method.is_staged(2) { 4 } else { 0 };
+    (12 + staged) * 4 * if method.traversal.leaf_order { 2 } else { 1 }
 }
 
 #[test]
@@ -43,9 +51,9 @@ fn every_variant_is_valid() {
     let kernels = kernels::all();
     assert_eq!(
         kernels.len(),
-        (kernels::methods().len() * 8 + 4) * 4,
-        "six render and two trace entries, three passes instead of one where they are staged, timed and counting, two \
-         kinds of driver, buffers and textures"
+        kernels::methods().iter().map(variants).sum::<usize>(),
+        "ten render and two trace entries, three passes instead of one where they are staged, timed and counting, two \
+         kinds of driver, buffers and textures, both layouts of triangles where a traversal takes both"
     );
     for algorithm in algorithms() {
         let method = method(algorithm.name);
@@ -73,6 +81,14 @@ fn every_variant_is_valid() {
         "bvh-stack:build=spatial,cull=off",
         "bvh:build=spatial",
         "bvh-stack:reflections=staged",
+        "bvh-quantised:cull=off",
+        "bvh-quantised:build=spatial",
+        "bvh4:order=octant",
+        "bvh8:order=octant",
+        "bvh8:build=spatial,order=octant",
+        "bvh4:stack=short",
+        "bvh8:stack=short,entries=16",
+        "cwbvh:build=spatial",
     ];
     for text in special {
         assert!(kernels.iter().any(|kernel| kernel.method == method(text)), "{text} is not checked");
@@ -92,6 +108,7 @@ fn a_broken_kernel_is_located() {
         stack_size: 32,
         software_threads: 2,
         textures: false,
+        leaf_order: false,
     };
     let mut source = assemble(&kernel);
     let (_, geom) = kernels::FILES.iter().find(|(name, _)| *name == "lib/geom.wgsl").unwrap();
@@ -138,6 +155,7 @@ fn struct_layouts_agree() {
             stack_size: 32,
             software_threads: 0,
             textures: false,
+            leaf_order: false,
         };
         check(&assemble(&kernel)).unwrap()
     };
@@ -163,7 +181,8 @@ fn struct_layouts_agree() {
             columns,
             height,
             shadow_reach,
-            part
+            part,
+            ambient_reach
         ]
     );
     same_layout!(module, "Grid", GridUniform, [bounds_min, cell_size, bounds_max, resolution, octants]);
@@ -171,7 +190,12 @@ fn struct_layouts_agree() {
     same_layout!(module, "Vertex", Vertex, [position, normal]);
     same_layout!(module, "Material", Material, [ambient, reflectivity, diffuse, exponent, specular]);
     same_layout!(module, "Light", Light, [position, colour]);
-    same_layout!(module, "Counters", Counters, [rays, inner, leaves, tests, pops, restarts, ropes, fallbacks, skips, boxes]);
+    same_layout!(
+        module,
+        "Counters",
+        Counters,
+        [rays, inner, leaves, tests, pops, restarts, ropes, fallbacks, skips, boxes]
+    );
     let (span, members) = layout(module, "CountedPixel");
     assert_eq!(span as usize, size_of::<CountedPixel>());
     assert_eq!(members.iter().find(|m| m.0 == "t").unwrap().1 as usize, offset_of!(CountedPixel, t));
@@ -182,6 +206,7 @@ fn struct_layouts_agree() {
         stack_size: 32,
         software_threads: 0,
         textures: false,
+        leaf_order: false,
     };
     let module = &check(&assemble(&staged)).unwrap();
     same_layout!(module, "Waiting", WaitingPath, [origin, pixel, direction, weight, colour]);
@@ -201,12 +226,15 @@ fn struct_layouts_agree() {
         stack_size: 8,
         software_threads: 0,
         textures: false,
+        leaf_order: false,
     };
     let module = &check(&assemble(&kernel)).unwrap();
     same_layout!(module, "GivenRay", TraceRay, [origin, direction]);
     same_layout!(module, "Job", CastJob, [rays, row_groups, limit, pad]);
     same_layout!(module, "KdTree", KdTreeUniform, [bounds_min, bounds_max]);
     same_layout!(&render("bih", false), "Bih", BihUniform, [bounds_min, bounds_max]);
+    same_layout!(&render("bvh8", false), "Wide", WideUniform, [bounds_min, root, bounds_max, axes, lo, step]);
+    same_layout!(&render("cwbvh", false), "Cwbvh", CwbvhUniform, [bounds_min, root, bounds_max]);
     // Rows of 16 bytes, of which kernels read whole ones
     let rows =
         [offset_of!(RopeLeaf, min), offset_of!(RopeLeaf, max), offset_of!(RopeLeaf, low), offset_of!(RopeLeaf, high)];
@@ -220,4 +248,14 @@ fn struct_layouts_agree() {
 fn nodes_of_a_bih_are_packed() {
     assert_eq!(size_of::<BihNode>(), 12);
     assert_eq!([offset_of!(BihNode, link), offset_of!(BihNode, words)], [0, 4]);
+}
+
+/// Kernels read a child as one texel, and a node of a CWBVH as five.
+#[test]
+fn nodes_of_wide_trees_are_packed() {
+    assert_eq!([offset_of!(Slot, min), offset_of!(Slot, max), offset_of!(Slot, reference)], [0, 6, 12]);
+    assert_eq!([size_of::<Slot>(), size_of::<CwNode>()], [16, 80]);
+    let links = [offset_of!(CwNode, exponents), offset_of!(CwNode, inner), offset_of!(CwNode, first_child)];
+    assert_eq!(links, [12, 15, 16]);
+    assert_eq!([offset_of!(CwNode, first_ref), offset_of!(CwNode, meta), offset_of!(CwNode, planes)], [20, 24, 32]);
 }

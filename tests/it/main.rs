@@ -13,6 +13,7 @@ mod exact; // the ray/triangle test against exact arithmetic
 mod fakes; // records with known content, a device that breaks on demand
 mod files; // names of files of all kinds, and what must not be written over
 mod identities; // hashes of kernels and readers do not depend on comments
+mod incoherent; // ambient and diffuse rays: their distribution, formulas, rows
 mod journals; // journals of any number of rows
 mod kernel_costs; // the static cost of kernels by hand, and that none is left out
 mod kernels; // every kernel variant through naga, struct layouts, no GPU
@@ -35,3 +36,4 @@ mod toy; // a workload of a few lines on the harness
 mod traversal; // every traversal against brute force, CPU twins and GPU
 mod verify; // the verifier notices one wrong pixel
 mod watertight; // no ray is lost at edges, on lattices, from afar
+mod wide; // what wide trees cost rays, counted over frames

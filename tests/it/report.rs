@@ -133,6 +133,7 @@ fn bands_are_stacked_without_gap_and_as_high_as_their_values() {
         groups: Vec::new(),
         bars: Vec::new(),
         bands: vec![band(0, [2.0, 4.0, 2.0]), band(1, [3.0, 1.0, 6.0])],
+        marks: Vec::new(),
     };
     let picture = Picture { title: "Bands".into(), panels: vec![panel], columns: 1 };
     let figure = Figure::draw("bands", "bands".into(), String::new(), &picture).unwrap();

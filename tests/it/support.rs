@@ -92,7 +92,7 @@ pub fn gpu() -> Option<&'static VulkanDevice> {
     gpu
 }
 
-/// A device of one's own that was opened with more features than usual; without a device that has them, says so and
+/// A device of one's own that was opened with these features and no others; without a device that has them, says so and
 /// returns nothing.
 pub fn gpu_with(features: Features) -> Option<VulkanDevice> {
     let all = adapters_with(features);

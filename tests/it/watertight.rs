@@ -59,7 +59,7 @@ fn no_ray_is_lost_inside_a_closed_mesh() {
 fn no_ray_of_a_million_is_lost_inside_a_closed_mesh() {
     lose_nothing_inside(
         100_000,
-        &["grid", "kdtree", "bvh", "bvh-stack", "ploc-stack", "bih", "grid-coop", "grid-packet"],
+        &["grid", "kdtree", "bvh", "bvh-stack", "ploc-stack", "bih", "grid-coop", "grid-packet", "bvh8", "cwbvh"],
     );
 }
 
@@ -84,13 +84,17 @@ fn lose_nothing_from_afar(levels: &[u32], count: usize, structures: &[&str]) {
 #[test]
 fn no_ray_is_lost_from_two_to_a_hundred_radii() {
     lose_nothing_from_afar(&[4], 1_000, &all_names());
-    lose_nothing_from_afar(&[7], 2_000, &["grid", "kdtree", "bvh-stack", "ploc-stack", "bih"]);
+    lose_nothing_from_afar(&[7], 2_000, &["grid", "kdtree", "bvh-stack", "ploc-stack", "bih", "bvh8", "cwbvh"]);
 }
 
 #[test]
 #[ignore = "a million rays; CI traces a sample of them"]
 fn no_ray_of_a_million_is_lost_from_two_to_a_hundred_radii() {
-    lose_nothing_from_afar(&[4, 5, 6, 7], 100_000, &["grid", "kdtree", "bvh", "bvh-stack", "ploc-stack", "bih"]);
+    lose_nothing_from_afar(
+        &[4, 5, 6, 7],
+        100_000,
+        &["grid", "kdtree", "bvh", "bvh-stack", "ploc-stack", "bih", "bvh8", "cwbvh"],
+    );
 }
 
 /// The check above can fail: the former test loses rays.

@@ -1,4 +1,6 @@
-// BVH nodes, and references to them. Twin: src/workloads/trace/bvh/layout.rs.
+// BVH nodes: siblings lie together, the root and a dummy first. Twin: src/workloads/trace/bvh/layout.rs.
+
+//!include trace/bvh/reference.wgsl
 
 struct Node {
     lo: vec3<f32>,
@@ -13,24 +15,17 @@ fn read_node(i: u32) -> Node {
     return Node(bitcast<vec3<f32>>(low.xyz), low.w, bitcast<vec3<f32>>(high.xyz), high.w);
 }
 
-// What a node leads to, in one word (packed by src/workloads/trace/bvh/layout.rs): the left child of an inner node,
-// which the right one follows; or with the top bit set four bits of count and 27 bits of first triangle reference.
-const LEAF: u32 = 0x80000000u;
-const EMPTY: u32 = LEAF; // a leaf without triangle references: the bottom of every stack, and an empty tree's root
+// The root; and the children of an inner node, by its reference. trace/wide/pair.wgsl reads the same from quantised
+// boxes.
 
-fn is_leaf(node: u32) -> bool {
-    return (node & LEAF) != 0u;
+fn read_root() -> Node {
+    return read_node(0u);
 }
 
-fn leaf_first(node: u32) -> u32 {
-    return node & 0x07ffffffu;
+fn read_left(node: u32) -> Node {
+    return read_node(node);
 }
 
-fn leaf_count(node: u32) -> u32 {
-    return (node >> 27u) & 15u;
-}
-
-// True if a box with this interval contains a point of the ray from its start to `t`.
-fn overlaps(interval: vec2<f32>, t: f32) -> bool {
-    return max(interval.x, 0.0) <= min(interval.y, t);
+fn read_right(node: u32) -> Node {
+    return read_node(node + 1u);
 }

@@ -4,7 +4,7 @@ fn widened(ray: Ray) -> Ray {
     if (!WIDENED) {
         return ray;
     }
-    let root = read_node(0u);
+    let root = read_root();
     let reach = max(abs(root.lo - ray.origin), abs(root.hi - ray.origin));
     let margin = vec3<f32>(max(max(reach.x, reach.y), reach.z) * (1.0 / 1048576.0));
     var wide = ray;

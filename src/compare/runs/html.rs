@@ -76,6 +76,7 @@ pub fn figure(comparison: &Comparison) -> Result<Option<Figure>> {
         groups: Vec::new(),
         bars: Vec::new(),
         bands: Vec::new(),
+        marks: Vec::new(),
     }];
     // As many as can be labelled
     let means: Vec<_> = comparison.means.iter().take(8).collect();
@@ -105,6 +106,7 @@ pub fn figure(comparison: &Comparison) -> Result<Option<Figure>> {
             groups: means.iter().map(name).collect(),
             bars: bars.collect(),
             bands: Vec::new(),
+            marks: Vec::new(),
         });
     }
     let picture = Picture { title: "Ratios of frame times".into(), panels, columns: 1 };

@@ -4,8 +4,10 @@ use crate::device::{DeviceInfo, DeviceType, Feature, Features};
 use crate::error::{Error, Result};
 
 /// Optional features that an opened device has wherever its adapter offers them. Others are never requested: a driver
-/// may compile the same kernel otherwise with them. Half precision only adds a type, which few kernels use.
-pub const WANTED: Features = Features::of(&[Feature::Timestamps, Feature::Half, Feature::FloatAtomics]);
+/// may compile the same kernel otherwise with them. Half precision and ray queries only add types and subgroups add
+/// operations, which few kernels use.
+pub const WANTED: Features =
+    Features::of(&[Feature::Timestamps, Feature::Half, Feature::FloatAtomics, Feature::Subgroups, Feature::RayQuery]);
 
 /// A Vulkan adapter that was listed and can be opened.
 pub struct Adapter {
@@ -53,9 +55,9 @@ pub fn adapters() -> Vec<Adapter> {
     list(WANTED)
 }
 
-/// Like [`adapters`], whose devices have these features as well wherever their adapters offer them.
+/// Like [`adapters`], whose devices have of these features those that their adapters offer, and no others.
 pub fn adapters_with(features: Features) -> Vec<Adapter> {
-    list(WANTED.union(features))
+    list(features)
 }
 
 pub(super) fn list(wanted: Features) -> Vec<Adapter> {

@@ -39,6 +39,8 @@ pub enum BindingKind {
     ReadWrite,
     /// A storage texture that is read, see [`super::ReadBuffer`].
     Texture(Texel),
+    /// `acceleration_structure`.
+    AccelerationStructure,
 }
 
 /// A binding of a kernel.
@@ -69,6 +71,7 @@ impl Binding {
                 format: texel.format(),
                 view_dimension: wgpu::TextureViewDimension::D2,
             },
+            BindingKind::AccelerationStructure => wgpu::BindingType::AccelerationStructure { vertex_return: false },
         };
         wgpu::BindGroupLayoutEntry { binding: self.number, visibility: wgpu::ShaderStages::COMPUTE, ty, count: None }
     }

@@ -158,7 +158,7 @@ impl VulkanDevice {
     }
 
     /// A buffer with contents. (wgpu's `create_buffer_init` panics on a lost device.)
-    fn filled(&self, what: &str, contents: &[u8], usage: wgpu::BufferUsages) -> Result<Buffer> {
+    pub(super) fn filled(&self, what: &str, contents: &[u8], usage: wgpu::BufferUsages) -> Result<Buffer> {
         let buffer = self.buffer(what, contents.len() as u64, usage | wgpu::BufferUsages::COPY_DST)?;
         self.queue.write_buffer(&buffer.buffer, 0, contents);
         self.check()?;

@@ -1,6 +1,7 @@
 //! Vulkan devices through wgpu: adapters, kernels, buffers, and frames with timestamps. Only this folder names wgpu's
 //! types; workloads build what they need from the thin ones here.
 
+mod acceleration;
 mod adapters;
 mod binding;
 mod buffers;
@@ -10,6 +11,7 @@ mod pipeline;
 mod read_buffer;
 mod run;
 
+pub use acceleration::AccelerationStructure;
 pub use adapters::{Adapter, Selector, WANTED, adapters, adapters_with, choose, fitting};
 pub use binding::{Binding, BindingKind, Pipeline, Texel};
 pub use buffers::Buffer;

@@ -1,5 +1,6 @@
 //! Compiled kernels and what is bound to them.
 
+use super::acceleration::AccelerationStructure;
 use super::binding::{Binding, BindingKind, Pipeline};
 use super::buffers::Buffer;
 use super::device::VulkanDevice;
@@ -36,6 +37,8 @@ pub enum Resource<'a> {
     Window(&'a Buffer, u64),
     /// Input in a buffer or a texture.
     Read(&'a ReadBuffer),
+    /// The driver's structure.
+    AccelerationStructure(&'a AccelerationStructure),
 }
 
 impl<'a> From<&'a Buffer> for Resource<'a> {
@@ -118,6 +121,7 @@ impl VulkanDevice {
                         size: wgpu::BufferSize::new(bytes),
                     }),
                     Resource::Read(buffer) => buffer.binding(),
+                    Resource::AccelerationStructure(structure) => structure.tlas.as_binding(),
                 };
                 wgpu::BindGroupEntry { binding, resource }
             })

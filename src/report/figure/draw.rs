@@ -40,6 +40,21 @@ pub struct Panel {
     pub bars: Vec<Bar>,
     /// Bands that are stacked from zero, the lowest first.
     pub bands: Vec<Band>,
+    /// Points with a word next to each.
+    pub marks: Vec<Mark>,
+}
+
+/// A point of a scatter plot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mark {
+    /// The word next to it, which the legend has in front of the label.
+    pub text: String,
+    /// The label in the legend.
+    pub label: String,
+    /// The index of colour and marker.
+    pub style: usize,
+    /// The values.
+    pub at: (f64, f64),
 }
 
 /// A line with markers.
@@ -162,17 +177,26 @@ fn finished(svg: &str, title: &str) -> String {
     format!("{tag}\n<title>{escaped}</title>\n<style>{}</style>{rest}", theme::style_sheet())
 }
 
-/// An entry of the legend: label, style, faint or not, bar or line.
-type Entry = (String, usize, bool, bool);
+/// An entry of the legend: label, style, faint or not, and what is drawn in front of it.
+type Entry = (String, usize, bool, Sample);
+
+/// What stands in front of a legend's label.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Sample {
+    Line,
+    Bar,
+    Marker,
+}
 
 /// The entries of all panels, each once, broken into rows.
 fn legend_rows(picture: &Picture) -> Vec<Vec<Entry>> {
     let mut entries: Vec<Entry> = Vec::new();
     for panel in &picture.panels {
-        let lines = panel.series.iter().map(|s| (s.label.clone(), s.style, s.faint, false));
-        let bars = panel.bars.iter().map(|b| (b.label.clone(), b.style, false, true));
-        let bands = panel.bands.iter().map(|b| (b.label.clone(), b.style, false, true));
-        for entry in lines.chain(bars).chain(bands) {
+        let lines = panel.series.iter().map(|s| (s.label.clone(), s.style, s.faint, Sample::Line));
+        let bars = panel.bars.iter().map(|b| (b.label.clone(), b.style, false, Sample::Bar));
+        let bands = panel.bands.iter().map(|b| (b.label.clone(), b.style, false, Sample::Bar));
+        let marks = panel.marks.iter().map(|m| (format!("{} {}", m.text, m.label), m.style, false, Sample::Marker));
+        for entry in lines.chain(bars).chain(bands).chain(marks) {
             if !entries.contains(&entry) {
                 entries.push(entry);
             }
@@ -201,12 +225,14 @@ fn draw_legend(root: &Area, entries: &[Entry], y: i32) -> Outcome {
     let total: f64 = entries.iter().map(entry_width).sum();
     let mut x = (f64::from(WIDTH) - total) / 2.0;
     for entry in entries {
-        let (label, style, faint, bar) = entry;
+        let (label, style, faint, sample) = entry;
         let at = x as i32;
-        if *bar {
+        if *sample == Sample::Bar {
             root.draw(&Rectangle::new([(at, y - 5), (at + 22, y + 6)], theme::series(*style).filled()))?;
         } else {
-            root.draw(&PathElement::new(vec![(at, y), (at + 24, y)], line_style(*style, *faint)))?;
+            if *sample == Sample::Line {
+                root.draw(&PathElement::new(vec![(at, y), (at + 24, y)], line_style(*style, *faint)))?;
+            }
             let outline = theme::marker(*style).into_iter().map(|(dx, dy)| (at + 12 + dx, y + dy)).collect::<Vec<_>>();
             draw_outline(root, outline, *style, *faint)?;
         }
@@ -270,6 +296,9 @@ fn draw_panel(area: &Area, panel: &Panel) -> Outcome {
     for series in &panel.series {
         draw_series(&mut chart, panel, series)?;
     }
+    for mark in &panel.marks {
+        draw_mark(&mut chart, panel, mark)?;
+    }
     Ok(())
 }
 
@@ -324,5 +353,13 @@ fn draw_series(chart: &mut Chart, panel: &Panel, series: &Series) -> Outcome {
         let ring = plotters::prelude::Circle::new(position(point), 10, AXIS.stroke_width(2));
         chart.draw_series([ring])?;
     }
+    Ok(())
+}
+
+fn draw_mark(chart: &mut Chart, panel: &Panel, mark: &Mark) -> Outcome {
+    let at = (panel.x.position(mark.at.0), panel.y.position(mark.at.1));
+    let marker = Polygon::new(theme::marker(mark.style), theme::series(mark.style).filled());
+    let text = letters(LETTER - 3).pos(Pos::new(HPos::Left, VPos::Center));
+    chart.draw_series([EmptyElement::at(at) + marker + Text::new(mark.text.clone(), (8, -4), text)])?;
     Ok(())
 }

@@ -5,7 +5,7 @@ mod draw;
 mod theme;
 
 pub use axis::{Axis, spreads};
-pub use draw::{Band, Bar, Panel, Picture, Series};
+pub use draw::{Band, Bar, Mark, Panel, Picture, Series};
 pub use theme::STYLES;
 
 use crate::error::{Error, Result};

@@ -142,7 +142,7 @@ fn draw(
         };
         // One axis for all panels, so that their bars compare
         let y = Axis::of_values(y_label, log, all.iter().copied());
-        Panel { title: String::new(), x, y, series: Vec::new(), groups, bars, bands: Vec::new() }
+        Panel { title: String::new(), x, y, series: Vec::new(), groups, bars, bands: Vec::new(), marks: Vec::new() }
     });
     let mut title = y_label.split(" [").next().unwrap_or(y_label).to_owned();
     title = crate::report::html::capital(&title);

@@ -56,8 +56,8 @@ pub fn data(runs: &[RecordedRun]) -> Data {
     if with_other_rays > 0 {
         let number = if with_other_rays == 1 { "1 row".into() } else { format!("{with_other_rays} rows") };
         data.notes.push(format!(
-            "no table of rt2 shows {number} with shadow or reflected rays: the document does not say that it measured \
-             any"
+            "no table of rt2 shows {number} with rays other than primary ones: the document does not say that it \
+             measured any"
         ));
     }
     data

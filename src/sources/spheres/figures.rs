@@ -103,7 +103,7 @@ fn bar_panel(title: String, y: Axis, (bars, groups): (Vec<Bar>, Vec<String>)) ->
         range: (-0.5, groups.len() as f64 - 0.5),
         ticks: (0..groups.len()).map(|group| group as f64).collect(),
     };
-    Panel { title, x, y, series: Vec::new(), groups, bars, bands: Vec::new() }
+    Panel { title, x, y, series: Vec::new(), groups, bars, bands: Vec::new(), marks: Vec::new() }
 }
 
 /// Times of each version and renderer, a panel for each scene.
@@ -194,7 +194,16 @@ fn line_panel(title: &str, (x_label, y_label): (&str, &str), series: Vec<Series>
     let x = Axis::of_sizes(x_label, points().map(|p| p.0));
     let log = spreads(points().map(|p| p.1));
     let y = Axis::of_values(y_label, log, points().map(|p| p.1));
-    Panel { title: title.to_owned(), x, y, series, groups: Vec::new(), bars: Vec::new(), bands: Vec::new() }
+    Panel {
+        title: title.to_owned(),
+        x,
+        y,
+        series,
+        groups: Vec::new(),
+        bars: Vec::new(),
+        bands: Vec::new(),
+        marks: Vec::new(),
+    }
 }
 
 /// Panels by scene: a line for each renderer's last version, and the ideal one.

@@ -99,7 +99,7 @@ fn bar_panel(title: String, y: &str, groups: Vec<String>, bars: Vec<Bar>) -> Pan
         ticks: (0..groups.len()).map(|group| group as f64).collect(),
     };
     let y = Axis::of_values(y, false, bars.iter().map(|bar| bar.mean));
-    Panel { title, x, y, series: Vec::new(), groups, bars, bands: Vec::new() }
+    Panel { title, x, y, series: Vec::new(), groups, bars, bands: Vec::new(), marks: Vec::new() }
 }
 
 /// Shares of groups: of rows, and the printed ones of a scene of the thesis.
@@ -182,6 +182,7 @@ fn stacked(view: &View, scene: &SceneKey, end: &str) -> Result<Option<Figure>> {
             groups: Vec::new(),
             bars: Vec::new(),
             bands,
+            marks: Vec::new(),
         })
     };
     let panels: Vec<Panel> = main_rows(view, scene).iter().filter_map(panel).collect();
@@ -202,7 +203,7 @@ fn frame_panel(y: &str, series: Vec<Series>) -> Panel {
     let log = spreads(points().map(|point| point.1));
     let y = Axis::of_values(y, log, points().map(|point| point.1));
     let (groups, bars, bands) = (Vec::new(), Vec::new(), Vec::new());
-    Panel { title: String::new(), x: frame_axis(frames), y, series, groups, bars, bands }
+    Panel { title: String::new(), x: frame_axis(frames), y, series, groups, bars, bands, marks: Vec::new() }
 }
 
 /// Frame times and assignments along the animation.
@@ -294,6 +295,7 @@ fn quality(view: &View, scenes: &[&SceneKey], end: &str) -> Result<Option<Figure
             groups: Vec::new(),
             bars: Vec::new(),
             bands: Vec::new(),
+            marks: Vec::new(),
         })
     };
     let panels: Vec<Panel> = scenes.iter().filter_map(panel).collect();

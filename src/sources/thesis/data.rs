@@ -92,9 +92,12 @@ pub struct RegisterLimit {
     pub speedup: Option<i32>,
 }
 
+/// The ray configurations of the thesis, in its order.
+pub const CONFIGS: [Config; 3] = [Config::P, Config::PS, Config::PSR];
+
 /// The configuration whose column shows a ray type: the one that adds it, as in tables 5.9 to 5.11.
 pub fn config_adding(ray: usize) -> Config {
-    Config::ALL[ray.min(2)]
+    CONFIGS[ray.min(2)]
 }
 
 impl Counts {

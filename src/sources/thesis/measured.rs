@@ -1,6 +1,6 @@
 //! Reads recorded runs into [`Data`]: which device and scene a row belongs to, and which of two rows counts.
 
-use super::data::{Counts, Data, Failure, Frame, Scene};
+use super::data::{CONFIGS, Counts, Data, Failure, Frame, Scene};
 use super::scenes::SceneKey;
 use super::structures;
 use super::structures::Step;
@@ -33,7 +33,8 @@ pub fn data(runs: &[RecordedRun]) -> Data {
             add_scene(&mut data, &mut scenes, scene_key(&record.scene), &record.scene);
             built.push(Built::of(scene_key(&record.scene), record, provenance));
         }
-        for record in &run.journal.configurations {
+        let of_thesis = |record: &&ConfigurationRecord| CONFIGS.contains(&record.config);
+        for record in run.journal.configurations.iter().filter(of_thesis) {
             let key = row_key(record);
             add_scene(&mut data, &mut scenes, key.clone(), &record.scene);
             let Some(&(device, info)) = devices.get(record.device) else { continue };

@@ -1,6 +1,7 @@
 //! What is registered: builders, traversals, and the algorithms that `--structure` names, each a pair of both.
 
 use super::cpu::Twin;
+use super::method::Group;
 use super::options::OptionInfo;
 use super::selection::Selection;
 use super::structure::{Structure, StructureKind};
@@ -79,6 +80,10 @@ pub struct Traversal {
     pub slots: fn(&Parameters) -> &'static [(&'static str, &'static str)],
     /// True where the rays of a work-group go together, so that its shape decides what is counted.
     pub cooperative: bool,
+    /// True if it may read triangles in leaf order ([`super::method::TriangleLayout`]).
+    pub leaf_order: bool,
+    /// Where primary rays go in packets of a subgroup, in a pass of their own: the pixels of a work-group of that pass.
+    pub packets: Option<fn(&Parameters) -> Group>,
     /// What the kernel demands of a device.
     pub needs: Features,
     /// How exactly its hits agree with those of other traversals.
@@ -120,6 +125,8 @@ impl Traversal {
         parameters: |_| Parameters::NONE,
         slots: |_| &[],
         cooperative: false,
+        leaf_order: false,
+        packets: None,
         needs: Features::of(&[]),
         agreement: Agreement::Exact,
         twin: None,
@@ -140,6 +147,14 @@ impl Parameters {
         let mut all = Parameters::NONE;
         all.0[..parameters.len()].copy_from_slice(&parameters.iter().copied().map(Some).collect::<Vec<_>>());
         all
+    }
+
+    /// These and one more, eight at most.
+    #[must_use]
+    pub fn and(mut self, name: &'static str, value: Parameter) -> Parameters {
+        let free = self.0.iter_mut().find(|place| place.is_none()).expect("at most eight parameters");
+        *free = Some((name, value));
+        self
     }
 
     /// Names and values, in the order in which they were given.

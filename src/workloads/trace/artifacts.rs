@@ -12,7 +12,7 @@ use std::path::Path;
 pub type Row<'a> = (&'a Artifact, &'a Input);
 
 /// Columns of `structures.csv`: empty where one has no meaning for a structure.
-const COLUMNS: [&str; 26] = [
+const COLUMNS: [&str; 27] = [
     "scene",
     "structure",
     "variant",
@@ -32,6 +32,7 @@ const COLUMNS: [&str; 26] = [
     "build_stages_ms",
     "build_upload_ms",
     "upload_ms",
+    "driver_build_ms",
     "structure_bytes",
     "geometry_bytes",
     "thesis_bytes",
@@ -50,7 +51,7 @@ pub fn rows(journal: &Journal) -> Vec<Row<'_>> {
 fn value((artifact, scene): Row, column: &str) -> Option<Value> {
     let of = |metrics: &[Metric]| metric(metrics, None, column).cloned();
     let places = match column {
-        "build_ms" | "build_upload_ms" | "upload_ms" => 3,
+        "build_ms" | "build_upload_ms" | "upload_ms" | "driver_build_ms" => 3,
         _ => 4,
     };
     match column {

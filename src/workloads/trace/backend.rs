@@ -9,19 +9,16 @@ use crate::record::row::Metric;
 use crate::scene::Scene;
 use crate::scene::placement::{exponent_of, power_of_two};
 pub use crate::workloads::size::Size;
-pub use crate::workloads::trace::count::Counters;
+pub use crate::workloads::trace::count::{ByRayType, Counters, RAY_TYPES};
 pub use crate::workloads::trace::given::TraceRay;
 use crate::workloads::trace::method::Group;
-pub use crate::workloads::trace::rays::{Config, MAX_BOUNCES};
+pub use crate::workloads::trace::rays::{AMBIENT_RAYS, Config, MAX_BOUNCES};
 use crate::workloads::trace::{Method, Structure};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
-/// Counters of one pixel by ray type: primary, shadow, reflected.
-pub type PixelCounters = [Counters; 3];
-
-/// Names of the ray types, in the order of [`PixelCounters`].
-pub const RAY_TYPES: [&str; 3] = ["primary", "shadow", "reflected"];
+/// Counters of one pixel.
+pub type PixelCounters = ByRayType<Counters>;
 
 /// The output of a timed kernel for a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
@@ -33,7 +30,7 @@ pub struct Pixel {
     pub rgba: u32,
 }
 
-/// The output of a counting kernel for a pixel (34 words).
+/// The output of a counting kernel for a pixel (54 words).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct CountedPixel {
@@ -61,6 +58,11 @@ pub fn shadow_reach(bounds: Aabb) -> f32 {
     bounds.diagonal() * 4.0
 }
 
+/// How far from a surface an ambient ray reaches, in scene units: a tenth of the diagonal.
+pub fn ambient_reach(bounds: Aabb) -> f32 {
+    bounds.diagonal() * 0.1
+}
+
 /// The smallest surface epsilon as a share of the largest coordinate: eight times its rounding (2^-24).
 /// Measured with a scene of curved surfaces and shadows, 400 to 4,000 diagonals away: acne ends at two roundings, and
 /// from sixteen on light comes through the seams of shadows.
@@ -73,12 +75,14 @@ pub struct Lengths {
     pub epsilon: f32,
     /// The greatest distance from a point at which shadow rays from a light start, see [`shadow_reach`].
     pub reach: f32,
+    /// How far ambient rays reach, see [`ambient_reach`].
+    pub ambient: f32,
 }
 
 impl Lengths {
     /// The lengths for a scene with these bounds.
     pub fn new(bounds: Aabb) -> Lengths {
-        Lengths { epsilon: surface_epsilon(bounds), reach: shadow_reach(bounds) }
+        Lengths { epsilon: surface_epsilon(bounds), reach: shadow_reach(bounds), ambient: ambient_reach(bounds) }
     }
 }
 
@@ -237,12 +241,12 @@ pub trait Prepared {
         Vec::new()
     }
 
-    /// Bytes allocated on the device for geometry (vertices, materials, lights) and for the structure (nodes and
-    /// triangle references), in this order.
-    fn allocated(&self) -> (u64, u64);
-
-    /// What else is known of the structure once it is on the device.
+    /// What is known of the structure only once it is on the device.
     fn artifact_metrics(&self) -> Vec<Metric> {
         Vec::new()
     }
+
+    /// Bytes allocated on the device for geometry (vertices, materials, lights) and for the structure (nodes and
+    /// triangle references), in this order.
+    fn allocated(&self) -> (u64, u64);
 }

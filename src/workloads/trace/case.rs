@@ -2,7 +2,7 @@
 
 use super::Selection;
 use super::backend::Size;
-use super::rays::{self, Config};
+use super::rays::{self, AMBIENT_RAYS, Config};
 use crate::error::{Error, Result};
 use crate::harness::workload::Case;
 use crate::workloads::size::parse_size;
@@ -47,6 +47,8 @@ impl TraceCase {
             Config::P => 2,
             Config::PS => 3,
             Config::PSR => 4,
+            Config::AO => 1 + u64::from(AMBIENT_RAYS),
+            Config::DIFFUSE => 2,
         };
         Case {
             axes,

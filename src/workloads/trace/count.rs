@@ -1,10 +1,18 @@
 //! What traversals count. The list at the end of this file is the only one: the Rust types, and the WGSL that counting
 //! and timed kernels include, are made from it.
 
+use crate::math::Ray;
+use crate::workloads::trace::traverse::{Lanes, Search, Traverser};
 use bytemuck::{Pod, Zeroable};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
+
+/// Names of the ray types, in the order of counters: those of the thesis of 2009, then incoherent ones.
+pub const RAY_TYPES: [&str; 5] = ["primary", "shadow", "reflected", "ambient", "diffuse"];
+
+/// One value per ray type, in the order of [`RAY_TYPES`].
+pub type ByRayType<T> = [T; RAY_TYPES.len()];
 
 /// Makes everything that has one item per counter. A counter is `event: field`; the traversal reports events.
 macro_rules! counters {
@@ -29,6 +37,12 @@ macro_rules! counters {
                 $(self.$field += u64::from(counters.$field);)+
             }
 
+            /// The sums of both.
+            #[must_use]
+            pub fn with(&self, other: &CounterSums) -> CounterSums {
+                CounterSums { $($field: self.$field + other.$field,)+ }
+            }
+
             /// Name and sum of each counter.
             pub fn values(&self) -> Vec<(&'static str, u64)> {
                 vec![$((stringify!($field), self.$field)),+]
@@ -46,6 +60,15 @@ macro_rules! counters {
             /// What was counted.
             fn total(&self) -> Counters;
 
+            /// Traverses with this way of counting.
+            fn traverse(
+                by: &dyn Traverser,
+                search: Search,
+                rays: &Lanes<Ray>,
+                alive: u64,
+                counters: &mut Lanes<Self>,
+            ) -> Lanes<u32>;
+
             /// So many tests of nodes' boxes.
             #[inline(always)]
             fn box_tests(&mut self, tests: u32) {
@@ -58,12 +81,30 @@ macro_rules! counters {
             fn total(&self) -> Counters {
                 Counters::default()
             }
+            fn traverse(
+                by: &dyn Traverser,
+                search: Search,
+                rays: &Lanes<Ray>,
+                alive: u64,
+                _: &mut Lanes<CountOff>,
+            ) -> Lanes<u32> {
+                by.uncounted(search, rays, alive)
+            }
         }
 
         impl Count for Counters {
             $(#[inline(always)] fn $event(&mut self) { self.$field += 1; })+
             fn total(&self) -> Counters {
                 *self
+            }
+            fn traverse(
+                by: &dyn Traverser,
+                search: Search,
+                rays: &Lanes<Ray>,
+                alive: u64,
+                counters: &mut Lanes<Counters>,
+            ) -> Lanes<u32> {
+                by.counted(search, rays, alive, counters)
             }
         }
 
@@ -98,7 +139,8 @@ pub fn wgsl(counting: bool) -> String {
     if counting {
         line(format_args!("struct Counters {{"));
         LIST.iter().for_each(|(_, field)| line(format_args!("    {field}: u32,")));
-        line(format_args!("}}\nvar<private> counters: array<Counters, 3>; // of this invocation, by ray type"));
+        line(format_args!("}}\nconst RAY_TYPES: u32 = {}u;", RAY_TYPES.len()));
+        line(format_args!("var<private> counters: array<Counters, RAY_TYPES>; // of this invocation, by ray type"));
         line(format_args!("var<private> ray_kind: u32;"));
     }
     let begin = if counting { "ray_kind = kind; count_ray();" } else { "" };

@@ -2,7 +2,7 @@
 
 use super::backend::{Prepared, Size};
 use super::rays::Config;
-use super::record::CounterSums;
+use super::record::{ByRayType, CounterSums};
 use crate::camera::View;
 use crate::error::Result;
 use crate::math::MISS;
@@ -14,7 +14,7 @@ const GIVEN_UP: f64 = 1.0;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Counted {
     /// Sums by ray type.
-    pub sums: [CounterSums; 3],
+    pub sums: ByRayType<CounterSums>,
     /// The first frame, RGBA8.
     pub first_image: Vec<u8>,
     /// Frames in which no primary ray hits anything.

@@ -12,7 +12,7 @@ use crate::workloads::trace::method::{Group, Reflections};
 use crate::workloads::trace::path::Frame;
 use crate::workloads::trace::render::render_group;
 use crate::workloads::trace::staged::{Waiting, bounce_group, primary_group};
-use crate::workloads::trace::traverse::{GROUP, STACK_SIZE, Traverse, Triangles};
+use crate::workloads::trace::traverse::{GROUP, STACK_SIZE, Traverse, Traverser, Triangles};
 use crate::workloads::trace::{Method, Structure, Traversal};
 use bytemuck::Zeroable;
 use rayon::prelude::*;
@@ -49,6 +49,7 @@ impl<'a> TwinInput<'a> {
     pub fn with<T: Traverse + 'a>(self, traversal: T) -> Box<dyn Prepared + 'a> {
         let TwinInput { device, scene, structure, method } = self;
         let (triangles, lengths) = (self.triangles(), Lengths::new(scene.bounds()));
+        let traversal = Box::new(traversal);
         Box::new(CpuPrepared { device, scene, structure, triangles, method, traversal, lengths, timed: Vec::new() })
     }
 }
@@ -99,19 +100,19 @@ impl<P> Strip<'_, P> {
     }
 }
 
-struct CpuPrepared<'a, T> {
+struct CpuPrepared<'a> {
     device: &'a CpuDevice,
     scene: &'a Scene,
     structure: &'a dyn Structure,
     triangles: Triangles<'a>,
     method: Method,
-    traversal: T,
+    traversal: Box<dyn Traverser + 'a>,
     lengths: Lengths,
     /// The timed image, kept between frames like a device's buffer.
     timed: Vec<Pixel>,
 }
 
-impl<'a, T: Traverse> CpuPrepared<'a, T> {
+impl<'a> CpuPrepared<'a> {
     /// Renders a tile into `out`, which holds its rows in full width.
     fn render<C: Count, P: Copy + Send>(
         &self,
@@ -123,7 +124,7 @@ impl<'a, T: Traverse> CpuPrepared<'a, T> {
         self.device.pool().install(|| match self.method.reflections {
             Reflections::Fused => {
                 self.groups(frame, tile, out, |corner, pixels| {
-                    render_group::<T, C>(frame, &self.traversal, corner, |x, y, p| pixels.set(x, y, convert(p)));
+                    render_group::<C>(frame, &*self.traversal, corner, |x, y, p| pixels.set(x, y, convert(p)));
                 });
             }
             Reflections::Staged => self.staged::<C, P>(frame, tile, out, &convert),
@@ -159,14 +160,14 @@ impl<'a, T: Traverse> CpuPrepared<'a, T> {
     ) {
         let lists = self.groups(frame, tile, out, |corner, pixels| {
             let mut list = Vec::new();
-            primary_group::<T, C>(frame, &self.traversal, corner, &mut list, |x, y, pixel| {
+            primary_group::<C>(frame, &*self.traversal, corner, &mut list, |x, y, pixel| {
                 pixels.set(x, y, convert(pixel));
             });
             list
         });
         let mut list = lists.concat();
         for _ in 0..frame.config.bounces() {
-            let passed = list.par_chunks(GROUP).map(|paths| bounce_group::<T, C>(frame, &self.traversal, paths));
+            let passed = list.par_chunks(GROUP).map(|paths| bounce_group::<C>(frame, &*self.traversal, paths));
             let (pixels, next): (Vec<Vec<CountedPixel>>, Vec<Vec<Waiting<C>>>) = passed.unzip();
             for (path, pixel) in list.iter().zip(pixels.into_iter().flatten()) {
                 let (x, y) = path.place;
@@ -193,7 +194,7 @@ impl<'a, T: Traverse> CpuPrepared<'a, T> {
     }
 }
 
-impl<T: Traverse> Prepared for CpuPrepared<'_, T> {
+impl Prepared for CpuPrepared<'_> {
     fn image(&mut self, config: Config, view: &View, size: Size) -> Result<Vec<Pixel>> {
         let mut pixels = vec![Pixel { triangle: POISON, rgba: POISON }; size.pixels()];
         self.timed_frame(config, view, size, &mut pixels);
@@ -242,7 +243,7 @@ impl<T: Traverse> Prepared for CpuPrepared<'_, T> {
         let mut hits = vec![Hit::NONE; rays.len()];
         self.device.pool().install(|| {
             hits.par_chunks_mut(GROUP).zip(rays.par_chunks(GROUP)).for_each(|(hits, rays)| {
-                trace_group(&self.traversal, self.triangles, rays, any_before, hits);
+                trace_group(&*self.traversal, self.triangles, rays, any_before, hits);
             });
         });
         Ok(hits)

@@ -2,7 +2,7 @@
 
 use crate::math::{Hit, MISS, Ray};
 use crate::workloads::trace::count::CountOff;
-use crate::workloads::trace::traverse::{GROUP, Traverse, Triangles, bits, set_of};
+use crate::workloads::trace::traverse::{GROUP, Traverser, Triangles, bits, set_of};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
@@ -29,8 +29,8 @@ impl TraceRay {
 
 /// Traces up to 64 rays as one work-group; `hits` is as long as `given`. With a limit it finds out whether anything is
 /// hit before that distance (`t` and `triangle` are then 0), otherwise the nearest hit.
-pub fn trace_group<T: Traverse>(
-    traversal: &T,
+pub fn trace_group(
+    traversal: &dyn Traverser,
     triangles: Triangles,
     given: &[TraceRay],
     any_before: Option<f32>,

@@ -48,6 +48,19 @@ pub enum Fetch {
     Textures,
 }
 
+/// Where a kernel reads the corners of triangles from; ignored by CPU twins.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum TriangleLayout {
+    /// In leaf order where the traversal takes it, the device computes on the CPU and textures hold it; indexed
+    /// elsewhere.
+    #[default]
+    Auto,
+    /// A reference to three vertices.
+    Indexed,
+    /// 48 bytes more for each triangle reference: its corners, in the order of the references.
+    LeafOrder,
+}
+
 /// Pixels of a work-group: both powers of two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Group {
@@ -109,6 +122,8 @@ pub struct Method {
     pub checked: bool,
     /// Where it reads from.
     pub fetch: Fetch,
+    /// Where it reads corners of triangles from.
+    pub triangles: TriangleLayout,
 }
 
 /// What of a method decides which rays there are and what they hit: methods that agree in it make the same image.

@@ -1,5 +1,6 @@
 //! Options of `--structure name:key=value,...`: what they take, and what they are about.
 
+use super::algorithm::Agreement;
 use super::selection::Selection;
 
 /// An option of an algorithm.
@@ -139,7 +140,8 @@ pub const COMMON_OPTIONS: &[OptionInfo] = &[
         "watertight",
         "ray/triangle test: watertight, or the one of Möller and Trumbore, which loses rays at edges",
         Kind::Word(&["watertight", "moller-trumbore"]),
-    ),
+    )
+    .idle_if(has_own_test),
     OptionInfo::new(
         Axis::Device,
         "reflections",
@@ -162,9 +164,29 @@ pub const COMMON_OPTIONS: &[OptionInfo] = &[
         "read scene and structure from storage buffers or textures (auto: buffers, on software drivers textures)",
         Kind::Word(&["auto", "buffers", "textures"]),
     ),
+    OptionInfo::new(
+        Axis::Device,
+        "triangles",
+        "auto",
+        "read corners by the indices of vertices, or in leaf order from a copy (auto: on software drivers the copy)",
+        Kind::Word(&["auto", "indexed", "leaf-order"]),
+    )
+    .idle_if(reads_indexed),
 ];
 
+fn reads_indexed(s: &Selection) -> Option<String> {
+    (!s.method().traversal.leaf_order).then(|| format!("{} reads all triangles by their vertices", s.name()))
+}
+
+fn has_own_test(s: &Selection) -> Option<String> {
+    let is_known = s.method().traversal.agreement != Agreement::HitsOnly;
+    (!is_known).then(|| "the driver has a test of its own".to_owned())
+}
+
 fn goes_together(s: &Selection) -> Option<String> {
+    if s.method().traversal.packets.is_some() {
+        return Some(format!("frames of {} have a pass for primary rays and one for all others", s.name()));
+    }
     s.method().traversal.cooperative.then(|| format!("the rays of a work-group of {} go together", s.name()))
 }
 

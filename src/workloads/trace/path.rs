@@ -5,11 +5,11 @@ use crate::camera::{PixelGrid, View};
 use crate::math::{MISS, Ray, T_MAX};
 use crate::scene::{Light, Scene};
 use crate::workloads::trace::Method;
-use crate::workloads::trace::backend::{Config, CountedPixel, GivenRay, Lengths, Pixel, Size};
+use crate::workloads::trace::backend::{ByRayType, Config, CountedPixel, GivenRay, Lengths, Pixel, RAY_TYPES, Size};
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::method::{Group, Pattern, ShadowRays};
 use crate::workloads::trace::shade::{Surface, normalize3, phong, reflected_ray, rgba8, surface_at};
-use crate::workloads::trace::traverse::{GROUP, Lanes, Traverse, Triangles, bits, set_of};
+use crate::workloads::trace::traverse::{GROUP, Lanes, Traverser, Triangles, bits, set_of};
 use glam::Vec3A;
 
 /// Indices of the ray types.
@@ -17,6 +17,10 @@ pub const PRIMARY: usize = 0;
 const SHADOW: usize = 1;
 /// See [`PRIMARY`].
 pub const REFLECTED: usize = 2;
+/// See [`PRIMARY`].
+pub const AMBIENT: usize = 3;
+/// See [`PRIMARY`].
+pub const DIFFUSE: usize = 4;
 
 /// One frame: the twin of the kernel's `Frame` and of its constants.
 pub struct Frame<'a> {
@@ -35,7 +39,8 @@ pub struct Frame<'a> {
     method: Method,
     grid: PixelGrid,
     lights: &'a [Light],
-    lengths: Lengths,
+    /// Lengths of secondary rays.
+    pub lengths: Lengths,
 }
 
 /// The paths of a group's pixels.
@@ -51,7 +56,7 @@ pub struct Paths<C> {
     /// Triangles and distances that the primary rays hit.
     pub first: Lanes<(u32, f32)>,
     /// By ray type.
-    pub counters: [Lanes<C>; 3],
+    pub counters: ByRayType<Lanes<C>>,
 }
 
 /// The primary ray of a pixel (rows from the top), exactly as a frame casts it.
@@ -136,48 +141,76 @@ impl<'a> Frame<'a> {
             colour: [Vec3A::ZERO; GROUP],
             weight: [1.0; GROUP],
             first: [(MISS, T_MAX); GROUP],
-            counters: [[C::default(); GROUP]; 3],
+            counters: [[C::default(); GROUP]; RAY_TYPES.len()],
+        }
+    }
+
+    /// Hands each pixel inside the image of the group whose top left pixel is `(column, row)` to `store`, with its
+    /// column and row.
+    pub fn store<C: Count>(
+        &self,
+        paths: &Paths<C>,
+        (column, row): (u32, u32),
+        mut store: impl FnMut(u32, u32, CountedPixel),
+    ) {
+        for lane in bits(self.inside((column, row))) {
+            let (x, y) = self.places[lane];
+            store(column + x, row + y, paths.pixel(lane));
         }
     }
 
     /// Traces the segments of rays of this kind, adds their light, and makes the mirrored rays the next ones. False if
     /// nothing was hit.
-    pub fn follow<T: Traverse, C: Count>(&self, traversal: &T, kind: usize, paths: &mut Paths<C>) -> bool {
+    pub fn follow<C: Count>(&self, traversal: &dyn Traverser, kind: usize, paths: &mut Paths<C>) -> bool {
         let Paths { rays, alive, counters, .. } = paths;
         bits(*alive).for_each(|lane| counters[kind][lane].ray());
-        let triangle_refs = traversal.nearest_hits(rays, *alive, &mut counters[kind]);
+        let triangle_refs = match kind {
+            PRIMARY => traversal.primary_hits(rays, *alive, &mut counters[kind]),
+            _ => traversal.nearest_hits(rays, *alive, &mut counters[kind]),
+        };
         self.follow_hits(traversal, kind, paths, &triangle_refs)
     }
 
-    /// The same for segments whose nearest hits are known.
-    pub fn follow_hits<T: Traverse, C: Count>(
+    /// The surfaces at the nearest hits of segments. Paths whose rays miss show the background and are done.
+    pub fn surfaces<C: Count>(
         &self,
-        traversal: &T,
+        kind: usize,
+        paths: &mut Paths<C>,
+        triangle_refs: &Lanes<u32>,
+    ) -> Lanes<Option<Surface>> {
+        let mut surfaces = [None; GROUP];
+        for lane in bits(paths.alive) {
+            if triangle_refs[lane] == MISS {
+                paths.colour[lane] += Vec3A::from(self.scene.background) * paths.weight[lane];
+                paths.alive &= !(1 << lane);
+            } else {
+                let (ray, epsilon) = (&paths.rays[lane], self.lengths.epsilon);
+                let surface = surface_at(self.triangles, self.scene, ray, triangle_refs[lane], epsilon);
+                if kind == PRIMARY {
+                    paths.first[lane] = (surface.triangle, surface.t);
+                }
+                surfaces[lane] = Some(surface);
+            }
+        }
+        surfaces
+    }
+
+    /// The same as [`Frame::follow`] for segments whose nearest hits are known.
+    pub fn follow_hits<C: Count>(
+        &self,
+        traversal: &dyn Traverser,
         kind: usize,
         paths: &mut Paths<C>,
         triangle_refs: &Lanes<u32>,
     ) -> bool {
-        let Paths { rays, alive, colour, weight, first, counters } = paths;
-
-        // Make it a surface; a ray that misses shows the background and is done
-        let mut surfaces: Lanes<Option<Surface>> = [None; GROUP];
-        for lane in bits(*alive) {
-            if triangle_refs[lane] == MISS {
-                colour[lane] += Vec3A::from(self.scene.background) * weight[lane];
-                *alive &= !(1 << lane);
-            } else {
-                let (ray, epsilon) = (&rays[lane], self.lengths.epsilon);
-                let surface = surface_at(self.triangles, self.scene, ray, triangle_refs[lane], epsilon);
-                if kind == PRIMARY {
-                    first[lane] = (surface.triangle, surface.t);
-                }
-                let material = &self.scene.materials[surface.material as usize];
-                colour[lane] += Vec3A::from(material.ambient) * weight[lane];
-                surfaces[lane] = Some(surface);
-            }
-        }
+        let surfaces = self.surfaces(kind, paths, triangle_refs);
+        let Paths { rays, alive, colour, weight, counters, .. } = paths;
         if *alive == 0 {
             return false;
+        }
+        for lane in bits(*alive) {
+            let Some(surface) = &surfaces[lane] else { continue };
+            colour[lane] += Vec3A::from(self.scene.materials[surface.material as usize].ambient) * weight[lane];
         }
 
         // Add the light of every lamp that is seen from there

@@ -13,18 +13,26 @@ pub enum Config {
     PS,
     /// And reflected rays from shiny surfaces, at most [`MAX_BOUNCES`].
     PSR,
+    /// Primary rays, and [`AMBIENT_RAYS`] any-hit rays from what they hit, distributed as the cosine, a tenth of the
+    /// scene's diagonal long.
+    AO,
+    /// Primary rays, and one nearest-hit ray from what they hit, distributed as the cosine.
+    DIFFUSE,
 }
 
 /// Most reflections that a primary ray may have.
 pub const MAX_BOUNCES: u32 = 2;
 
+/// Ambient rays of a pixel.
+pub const AMBIENT_RAYS: u32 = 4;
+
 impl Config {
-    /// All, in the thesis's order.
-    pub const ALL: [Config; 3] = [Config::P, Config::PS, Config::PSR];
+    /// All, in the order of the ray types that they add.
+    pub const ALL: [Config; 5] = [Config::P, Config::PS, Config::PSR, Config::AO, Config::DIFFUSE];
 
     /// True if shadow rays are cast.
     pub fn shadows(self) -> bool {
-        self != Config::P
+        matches!(self, Config::PS | Config::PSR)
     }
 
     /// Reflections followed.
@@ -37,7 +45,8 @@ impl Config {
         Config::ALL.into_iter().find(|config| format!("{config:?}") == name)
     }
 
-    /// Index of the ray type that this configuration adds to the one before it: of primary, shadow, reflected.
+    /// Index of the ray type that is this configuration's own: [`super::count::RAY_TYPES`] are in the order of
+    /// [`Config::ALL`].
     pub fn added_ray_type(self) -> usize {
         Config::ALL.iter().position(|&config| config == self).unwrap_or_default()
     }
@@ -49,5 +58,6 @@ impl Config {
 /// [`Error::Input`].
 pub fn parse_config(text: &str) -> Result<Config> {
     let found = Config::named(&text.to_uppercase());
-    found.ok_or_else(|| Error::argument("--config", format!("unknown configuration {text:?}"), "give P, PS or PSR"))
+    let problem = || format!("unknown configuration {text:?}");
+    found.ok_or_else(|| Error::argument("--config", problem(), "give P, PS, PSR, AO or DIFFUSE"))
 }

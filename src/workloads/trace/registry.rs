@@ -1,7 +1,7 @@
 //! The names of `--structure`, in the order of tables.
 
 use super::algorithm::Algorithm;
-use super::{bih, brute, bvh, grid, kdtree};
+use super::{bih, brute, bvh, cwbvh, grid, kdtree, query, wide};
 
 static ALGORITHMS: &[&Algorithm] = &[
     &grid::dda::GRID,
@@ -12,7 +12,12 @@ static ALGORITHMS: &[&Algorithm] = &[
     &bih::stack::BIH,
     &grid::coop::GRID_COOP,
     &grid::packet::GRID_PACKET,
+    &query::driver::QUERY,
     &brute::scan::BRUTE,
+    &wide::pair_stack::BVH_QUANTISED,
+    &wide::stack::BVH4,
+    &wide::stack::BVH8,
+    &cwbvh::stack::CWBVH,
 ];
 
 /// All algorithms.

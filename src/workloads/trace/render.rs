@@ -2,27 +2,21 @@
 
 use crate::workloads::trace::backend::CountedPixel;
 use crate::workloads::trace::count::Count;
-use crate::workloads::trace::path::{Frame, PRIMARY, REFLECTED};
-use crate::workloads::trace::traverse::{Traverse, bits};
+use crate::workloads::trace::path::{Frame, PRIMARY};
+use crate::workloads::trace::secondary::shade_primary;
+use crate::workloads::trace::traverse::{Traverser, bits};
 
-/// Renders the group whose top left pixel is `(column, row)` and hands each pixel inside the image to `store` with its
-/// column and row.
-pub fn render_group<T: Traverse, C: Count>(
+/// Renders the group whose top left pixel is `corner`, column and row, and hands each pixel inside the image to `store`
+/// with its column and row.
+pub fn render_group<C: Count>(
     frame: &Frame,
-    traversal: &T,
-    (column, row): (u32, u32),
-    mut store: impl FnMut(u32, u32, CountedPixel),
+    traversal: &dyn Traverser,
+    corner: (u32, u32),
+    store: impl FnMut(u32, u32, CountedPixel),
 ) {
-    let inside = frame.inside((column, row));
-    let mut paths = frame.start_paths::<C>((column, row), inside);
-    for bounce in 0..=frame.config.bounces() {
-        let kind = if bounce == 0 { PRIMARY } else { REFLECTED };
-        if paths.alive == 0 || !frame.follow(traversal, kind, &mut paths) {
-            break;
-        }
-    }
-    for lane in bits(inside) {
-        let (x, y) = frame.places[lane];
-        store(column + x, row + y, paths.pixel(lane));
-    }
+    let mut paths = frame.start_paths::<C>(corner, frame.inside(corner));
+    bits(paths.alive).for_each(|lane| paths.counters[PRIMARY][lane].ray());
+    let triangle_refs = traversal.primary_hits(&paths.rays, paths.alive, &mut paths.counters[PRIMARY]);
+    shade_primary(frame, traversal, corner, &mut paths, &triangle_refs);
+    frame.store(&paths, corner, store);
 }

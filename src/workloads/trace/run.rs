@@ -7,7 +7,7 @@ use super::input::TraceInput;
 use super::rays::Config;
 use super::record::{Verification, counter_metrics};
 use super::verify;
-use super::{Built, Selection};
+use super::{Agreement, Built, Selection};
 use crate::camera::View;
 use crate::device::{DeviceInfo, FrameTime, KernelInfo};
 use crate::error::{Error, Result};
@@ -180,7 +180,11 @@ impl Run for TraceRun<'_> {
             context.emit(Event::Work(work / views.len() as u64));
             context.check_interrupt()
         })?;
-        let mut verdict = Verdict { metrics: counter_metrics(&counted.sums), ..Verdict::default() };
+        let mut metrics = counter_metrics(&counted.sums);
+        if self.selection.method().traversal.agreement == Agreement::HitsOnly {
+            metrics.retain(|metric| metric.name == "rays"); // nothing else is known
+        }
+        let mut verdict = Verdict { metrics, ..Verdict::default() };
         compare_kernels(self.exact, &std::mem::take(&mut self.first_image), &counted.first_image, &mut verdict);
         verdict.warnings.extend(counted.warnings(views.len()));
         Ok(verdict)

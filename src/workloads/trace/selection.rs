@@ -7,7 +7,7 @@ use crate::threads;
 use crate::workloads::trace::algorithm::{Algorithm, Made};
 use crate::workloads::trace::build::gpu::BuildTimes;
 use crate::workloads::trace::intersect::TriangleTest;
-use crate::workloads::trace::method::{Fetch, Group, Method, Pattern, Reflections, ShadowRays};
+use crate::workloads::trace::method::{Fetch, Group, Method, Pattern, Reflections, ShadowRays, TriangleLayout};
 use crate::workloads::trace::options::{Axis, OptionInfo};
 use crate::workloads::trace::registry::algorithms;
 use crate::workloads::trace::structure::Structure;
@@ -180,6 +180,11 @@ impl Selection {
                 "buffers" => Fetch::Buffers,
                 "textures" => Fetch::Textures,
                 _ => Fetch::Auto,
+            },
+            triangles: match self.value("triangles") {
+                "indexed" => TriangleLayout::Indexed,
+                "leaf-order" => TriangleLayout::LeafOrder,
+                _ => TriangleLayout::Auto,
             },
         }
     }

@@ -2,10 +2,10 @@
 //! `kernels/trace/staged/primary.wgsl` and `bounce.wgsl`.
 
 use crate::math::Ray;
-use crate::workloads::trace::backend::CountedPixel;
+use crate::workloads::trace::backend::{ByRayType, CountedPixel};
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::path::{Frame, PRIMARY, Paths, REFLECTED};
-use crate::workloads::trace::traverse::{GROUP, Lanes, Traverse, bits};
+use crate::workloads::trace::traverse::{GROUP, Lanes, Traverser, bits};
 use glam::Vec3A;
 
 /// A path that goes on in a mirror: its pixel, its next ray, and what it has gathered.
@@ -17,7 +17,7 @@ pub struct Waiting<C> {
     colour: Vec3A,
     weight: f32,
     first: (u32, f32),
-    counters: [C; 3],
+    counters: ByRayType<C>,
 }
 
 impl<C: Count> Waiting<C> {
@@ -35,9 +35,9 @@ impl<C: Count> Waiting<C> {
 
 /// The first pass for the group whose top left pixel is `(column, row)`: hands each pixel inside the image to `store`
 /// with its column and row, and appends the paths that go on to the list.
-pub fn primary_group<T: Traverse, C: Count>(
+pub fn primary_group<C: Count>(
     frame: &Frame,
-    traversal: &T,
+    traversal: &dyn Traverser,
     (column, row): (u32, u32),
     list: &mut Vec<Waiting<C>>,
     mut store: impl FnMut(u32, u32, CountedPixel),
@@ -56,9 +56,9 @@ pub fn primary_group<T: Traverse, C: Count>(
 }
 
 /// A further pass for up to 64 paths of a list: their pixels as they are now, and the paths that go on.
-pub fn bounce_group<T: Traverse, C: Count>(
+pub fn bounce_group<C: Count>(
     frame: &Frame,
-    traversal: &T,
+    traversal: &dyn Traverser,
     waiting: &[Waiting<C>],
 ) -> (Vec<CountedPixel>, Vec<Waiting<C>>) {
     fn lanes<C: Copy, T>(waiting: &[Waiting<C>], of: impl Fn(&Waiting<C>) -> T) -> Lanes<T> {

@@ -3,7 +3,7 @@
 
 use crate::math::{MISS, Ray, T_MAX, Vertex};
 use crate::workloads::trace::TriangleRef;
-use crate::workloads::trace::count::Count;
+use crate::workloads::trace::count::{Count, CountOff, Counters};
 use crate::workloads::trace::intersect::{TriangleHit, TriangleTest};
 use glam::Vec3A;
 
@@ -28,14 +28,70 @@ pub trait Traverse: Sync {
         counters: &mut Lanes<C>,
     ) -> Lanes<u32>;
 
-    /// The triangle reference of each ray's nearest hit, or [`MISS`].
-    fn nearest_hits<C: Count>(&self, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<C>) -> Lanes<u32> {
+    /// The nearest hits of the primary rays of 8 x 8 pixels in Morton order.
+    fn primary_hits<C: Count>(&self, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<C>) -> Lanes<u32> {
         self.traverse::<false, C>(rays, T_MAX, alive, counters)
+    }
+}
+
+/// What rays search for.
+#[derive(Clone, Copy, Debug)]
+pub enum Search {
+    /// The nearest hit of the primary rays of 8 x 8 pixels in Morton order.
+    Primary,
+    /// The nearest hit.
+    Nearest,
+    /// Any hit before this distance.
+    Any(f32),
+}
+
+/// A [`Traverse`] behind a pointer: frames are compiled once, and not once for each traversal.
+pub trait Traverser: Sync {
+    /// Counts nothing.
+    fn uncounted(&self, search: Search, rays: &Lanes<Ray>, alive: u64) -> Lanes<u32>;
+
+    /// Adds to `counters`.
+    fn counted(&self, search: Search, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<Counters>) -> Lanes<u32>;
+}
+
+impl<T: Traverse> Traverser for T {
+    fn uncounted(&self, search: Search, rays: &Lanes<Ray>, alive: u64) -> Lanes<u32> {
+        find(self, search, rays, alive, &mut [CountOff; GROUP])
+    }
+
+    fn counted(&self, search: Search, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<Counters>) -> Lanes<u32> {
+        find(self, search, rays, alive, counters)
+    }
+}
+
+fn find<T: Traverse, C: Count>(
+    traversal: &T,
+    search: Search,
+    rays: &Lanes<Ray>,
+    alive: u64,
+    counters: &mut Lanes<C>,
+) -> Lanes<u32> {
+    match search {
+        Search::Primary => traversal.primary_hits(rays, alive, counters),
+        Search::Nearest => traversal.traverse::<false, C>(rays, T_MAX, alive, counters),
+        Search::Any(limit) => traversal.traverse::<true, C>(rays, limit, alive, counters),
+    }
+}
+
+impl dyn Traverser + '_ {
+    /// The triangle reference of each ray's nearest hit, or [`MISS`].
+    pub fn nearest_hits<C: Count>(&self, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<C>) -> Lanes<u32> {
+        C::traverse(self, Search::Nearest, rays, alive, counters)
+    }
+
+    /// The same for the primary rays of 8 x 8 pixels in Morton order.
+    pub fn primary_hits<C: Count>(&self, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<C>) -> Lanes<u32> {
+        C::traverse(self, Search::Primary, rays, alive, counters)
     }
 
     /// One bit for each ray that hits anything at a distance below `limit`.
-    fn any_hits<C: Count>(&self, rays: &Lanes<Ray>, limit: f32, alive: u64, counters: &mut Lanes<C>) -> u64 {
-        let found = self.traverse::<true, C>(rays, limit, alive, counters);
+    pub fn any_hits<C: Count>(&self, rays: &Lanes<Ray>, limit: f32, alive: u64, counters: &mut Lanes<C>) -> u64 {
+        let found = C::traverse(self, Search::Any(limit), rays, alive, counters);
         set_of(bits(alive).filter(|&lane| found[lane] != MISS))
     }
 }

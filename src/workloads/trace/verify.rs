@@ -166,6 +166,8 @@ impl Verifier {
         let timed = prepared.image(config, view, size)?;
         let found = match twin {
             Some(_) => Answers::counted(prepared, (config, view, size), true)?,
+            // Hits are compared by their distances, which only the counting kernel tells
+            None if agreement == Agreement::HitsOnly => Answers::counted(prepared, (config, view, size), false)?,
             None => Answers { pixels: timed.clone(), distances: Vec::new(), counters: Vec::new() },
         };
         let own = match twin {
@@ -286,9 +288,9 @@ fn judge(
         max_colour: 0,
     };
     // The reference has been checked by brute force; the twin of the same structure must agree with it as well
-    differences.hits_against(&reference.answers, timed, found, exact);
+    differences.hits_against(&reference.answers, timed, found, (exact, agreement));
     if let Some(twin) = twin {
-        differences.hits_against(twin, timed, found, exact);
+        differences.hits_against(twin, timed, found, (exact, agreement));
         for (index, (a, b)) in twin.counters.iter().zip(&found.counters).enumerate() {
             differences.counters[index] = a != b;
         }
@@ -345,11 +347,22 @@ fn judge(
 }
 
 impl Differences {
-    fn hits_against(&mut self, expected: &Answers, timed: &[Pixel], found: &Answers, exact: bool) {
+    fn hits_against(
+        &mut self,
+        expected: &Answers,
+        timed: &[Pixel],
+        found: &Answers,
+        (exact, agreement): (bool, Agreement),
+    ) {
+        // Where hits are compared by distance, of two triangles at the same distance either may be hit
+        let is_other = |a: u32, b: u32| match agreement {
+            Agreement::HitsOnly => (a == MISS) != (b == MISS),
+            Agreement::Exact | Agreement::Share(_) => a != b,
+        };
         for (index, differs) in self.hits.iter_mut().enumerate() {
             let right = expected.pixels[index].triangle;
             let pixels = [timed.get(index), found.pixels.get(index)];
-            let triangles_differ = pixels.iter().any(|p| p.is_none_or(|p| p.triangle != right));
+            let triangles_differ = pixels.iter().any(|p| p.is_none_or(|p| is_other(p.triangle, right)));
             let far_off = match (found.distances.get(index), expected.distances.get(index)) {
                 (Some(a), Some(b)) if exact => a.to_bits() != b.to_bits(),
                 (Some(a), Some(b)) => a.is_nan() || (a - b).abs() > DISTANCE_SLACK * b.abs(),

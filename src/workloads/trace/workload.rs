@@ -77,8 +77,9 @@ paths that have not changed.",
         options("device_options", "How the device works"),
         axis(
             "config",
-            "P|PS|PSR",
-            "Ray configurations: P primary rays, PS with shadow rays, PSR with reflected rays; comma list",
+            "P|PS|PSR|AO|DIFFUSE",
+            "Ray configurations: P primary rays, PS with shadow rays, PSR with reflected rays; AO with 4 short any-hit \
+             rays a pixel, DIFFUSE with one nearest-hit ray; comma list",
         ),
         axis("resolution", "N|WxH", "Image sizes in pixels; comma list"),
         Axis {
@@ -99,6 +100,8 @@ paths that have not changed.",
         "primary_rays",
         "shadow_rays",
         "reflected_rays",
+        "ambient_rays",
+        "diffuse_rays",
         "primary_steps_per_ray",
         "primary_tests_per_ray",
         "primary_restarts_per_ray",
@@ -129,6 +132,26 @@ paths that have not changed.",
         "reflected_fallbacks_per_ray",
         "reflected_skips_per_ray",
         "reflected_boxes_per_ray",
+        "ambient_steps_per_ray",
+        "ambient_tests_per_ray",
+        "ambient_restarts_per_ray",
+        "ambient_inner_per_ray",
+        "ambient_leaves_per_ray",
+        "ambient_pops_per_ray",
+        "ambient_ropes_per_ray",
+        "ambient_fallbacks_per_ray",
+        "ambient_skips_per_ray",
+        "ambient_boxes_per_ray",
+        "diffuse_steps_per_ray",
+        "diffuse_tests_per_ray",
+        "diffuse_restarts_per_ray",
+        "diffuse_inner_per_ray",
+        "diffuse_leaves_per_ray",
+        "diffuse_pops_per_ray",
+        "diffuse_ropes_per_ray",
+        "diffuse_fallbacks_per_ray",
+        "diffuse_skips_per_ray",
+        "diffuse_boxes_per_ray",
         "build_ms",
         "build_threads",
         "structure_bytes",
@@ -153,13 +176,15 @@ paths that have not changed.",
         ("result", "result"),
     ],
     table_groups: &["config", "resolution"],
-    table_note: "steps, tests and restarts: of primary rays under P, of shadow rays under PS, of reflected rays under PSR",
+    table_note: "steps, tests and restarts: of primary rays under P, of shadow rays under PS, of reflected rays under PSR, of \
+        ambient rays under AO, of diffuse rays under DIFFUSE",
     presets: &[
         ("quick", include_str!("../../../presets/sweep/quick.toml")),
         ("thesis", include_str!("../../../presets/sweep/thesis.toml")),
         ("thesis-lite", include_str!("../../../presets/sweep/thesis-lite.toml")),
         ("rt2", include_str!("../../../presets/sweep/rt2.toml")),
         ("rt2-lite", include_str!("../../../presets/sweep/rt2-lite.toml")),
+        ("structures", include_str!("../../../presets/sweep/structures.toml")),
     ],
 };
 
@@ -247,13 +272,15 @@ impl Workload for Trace {
         for (index, ray) in RAY_TYPES.into_iter().enumerate() {
             let Some(rays) = sum(ray, "rays").filter(|&rays| rays > 0) else { continue };
             let per_ray = |sum: u64| round(sum as f64 / rays as f64, 4);
-            let steps = Some(sum(ray, "inner").unwrap_or(0) + sum(ray, "leaves").unwrap_or(0));
+            // None where nothing but rays is counted
+            let visits = [sum(ray, "inner"), sum(ray, "leaves")];
+            let steps = visits.iter().any(Option::is_some).then(|| visits.into_iter().flatten().sum());
             let counters = row.metrics.iter().filter(|m| m.of.as_deref() == Some(ray) && m.name != "rays");
             let sums = counters.filter_map(|m| Some((m.name.as_str(), m.value.integer()?)));
             for (name, sum) in steps.map(|steps| ("steps", steps)).into_iter().chain(sums) {
                 let name = format!("{name}_per_ray");
                 derived.push(Metric::of(ray, &name, per_ray(sum)));
-                // Each configuration shows the ray type that it adds
+                // Each configuration shows its own ray type
                 if config.is_some_and(|config| config.added_ray_type() == index) {
                     derived.push(Metric::new(&name, per_ray(sum)));
                 }

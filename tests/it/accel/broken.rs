@@ -9,15 +9,15 @@ use rtbench::workloads::trace::bvh::{Bvh, BvhNode};
 use rtbench::workloads::trace::grid::Grid;
 use rtbench::workloads::trace::kdtree::{KdNode, KdTree, NO_ROPE, RopeTree};
 
-fn scene() -> Scene {
+pub(super) fn scene() -> Scene {
     scenes::random("good", 400, 1.0, 0.1, 9)
 }
 
 /// What is done, words that validation must say about it, and how it is done.
-type Damage<'a, T> = (&'a str, &'a str, &'a dyn Fn(&mut T));
+pub(super) type Damage<'a, T> = (&'a str, &'a str, &'a dyn Fn(&mut T));
 
 /// Breaks a good structure and checks that validation says so, in these words.
-fn assert_noticed<T: Structure + Clone>(good: &T, damages: &[Damage<T>]) {
+pub(super) fn assert_noticed<T: Structure + Clone>(good: &T, damages: &[Damage<T>]) {
     let scene = scene();
     good.validate(&scene).expect("good before it is broken");
     for (damage, words, break_it) in damages {

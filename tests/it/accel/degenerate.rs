@@ -98,9 +98,18 @@ fn ploc_builds_everything_else() {
 #[test]
 fn no_structure_multiplies_its_records_without_bound() {
     for scene in chains().into_iter().chain(overlapping()) {
-        for selection in
-            ["grid", "kdtree", "kdtree:thin=0,small_leaf=0", "kdtree:build=sort", "kdtree:build=min-max", "bvh", "bih"]
-        {
+        for selection in [
+            "grid",
+            "kdtree",
+            "kdtree:thin=0,small_leaf=0",
+            "kdtree:build=sort",
+            "kdtree:build=min-max",
+            "bvh",
+            "bih",
+            "bvh-quantised",
+            "bvh8",
+            "cwbvh",
+        ] {
             let built = made(selection, &scene);
             let triangle_refs = built.structure.triangle_refs().len();
             assert!(

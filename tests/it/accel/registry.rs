@@ -43,6 +43,12 @@ fn names_and_traversals() {
     assert_eq!(flags("bvh-stack:build=sweep,cull=off"), [false, false]);
     assert_eq!(flags("bvh-stack:build=spatial"), [true, true]);
     assert_eq!([flags("ploc-stack"), flags("ploc-stack:preset=slow")], [[true, false], [true, true]]);
+    assert_eq!([flags("bvh-stack:build=ploc"), flags("bvh8:build=ploc,preset=slow")], [[true, false], [true, true]]);
+    let kernel = |text| method(text).traversal.kernel;
+    assert_eq!(kernel("bvh4"), "trace/wide/stack.wgsl");
+    assert_eq!(kernel("bvh8:order=octant"), "trace/wide/octants.wgsl");
+    assert_eq!(kernel("bvh8:stack=short"), "trace/wide/short_stack.wgsl");
+    assert_eq!(["bvh4", "bvh8"].map(|text| method(text).parameters.word("WIDTH")), [4, 8]);
     assert_eq!(method("bvh-stack").parameters, bvh::stack::defaults());
     assert_eq!(method("grid"), method("bvh-stack").by(&grid::dda::DDA, Parameters::NONE));
     assert_eq!(method("grid").group, Group::SQUARE);
@@ -146,6 +152,17 @@ fn an_option_without_effect_is_refused() {
         ("bvh:spatial_bins=8", "spatial_bins has no effect: build=binned"),
         ("bvh:spatial_depth=8", "spatial_depth has no effect: build=binned"),
         ("bvh:build=sweep,overlap=below", "overlap has no effect: build=sweep"),
+        ("bvh:build=ploc,max_leaf=2", "max_leaf has no effect: build=ploc"),
+        ("bvh-stack:build=ploc,max_depth=20", "max_depth has no effect: build=ploc"),
+        ("bvh8:build=ploc,kt=1", "kt has no effect: build=ploc"),
+        ("bvh:build=ploc,axes=longest", "axes has no effect: build=ploc"),
+        ("bvh:preset=slow", "preset has no effect: build=binned"),
+        ("bvh4:entries=3", "entries has no effect: stack=full"),
+        ("bvh8:order=octant,stack=short", "stack has no effect: order=octant"),
+        ("bvh8:order=octant,cull=off", "cull has no effect: order=octant"),
+        ("bvh8:stack=short,cull=off", "cull has no effect: stack=short"),
+        ("cwbvh:build=binned,preset=slow", "preset has no effect: build=binned"),
+        ("cwbvh:max_leaf=2", "max_leaf has no effect: build=ploc"),
     ] {
         let error = Selection::parse(text).expect_err(text);
         assert!(matches!(error, Error::Input(_)) && error.exit_code() == 2);
@@ -166,6 +183,8 @@ fn equal_trees_are_shared() {
     assert_eq!(selection("kdtree").build_key(), selection("kdtree:search=stack").build_key());
     assert_ne!(selection("kdtree").build_key(), selection("kdtree:search=ropes").build_key());
     assert_eq!(selection("grid:x=9").build_key(), selection("grid-coop:x=9").build_key());
+    assert_eq!(selection("bvh8").build_key(), selection("bvh8:stack=short").build_key());
+    assert_ne!(selection("bvh8").build_key(), selection("bvh8:order=octant").build_key());
     let mut keys: Vec<String> = SELECTIONS.map(|s| selection(s).build_key()).to_vec();
     keys.sort();
     keys.dedup();

@@ -7,7 +7,9 @@ use rtbench::record::row::{Samples, Status, TimingSource};
 use rtbench::record::run::End;
 use rtbench::sources::runs::RecordedRun;
 use rtbench::workloads::trace::rays::Config;
-use rtbench::workloads::trace::record::{ConfigurationRecord, CounterSums, SceneRecord, StructureRecord, TraceJournal};
+use rtbench::workloads::trace::record::{
+    ConfigurationRecord, CounterSums, SceneRecord, StructureRecord, TraceJournal, by_ray_type,
+};
 use std::path::Path;
 
 /// A run on a discrete GPU, to be filled.
@@ -73,7 +75,7 @@ impl Builder {
             passes: 3,
             status: Status::Ok,
             verified: true,
-            counters: Some([sums(10, 10), sums(20, 10), sums(30, 10)]),
+            counters: Some(by_ray_type([sums(10, 10), sums(20, 10), sums(30, 10)])),
             timing_source: Some(TimingSource::Wall),
             samples: Some(Samples { pass_ns: vec![1; 3], wall_ns: passes, ..Samples::default() }),
             ..ConfigurationRecord::new(config)

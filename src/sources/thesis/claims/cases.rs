@@ -4,7 +4,7 @@ use super::{Case, case, frame_time};
 use crate::compare::judge::{Outcome, Uncertain, all, less};
 use crate::report::{Form, Number};
 use crate::sources::rows::BuiltBy;
-use crate::sources::thesis::data::{Built, Data, Frame};
+use crate::sources::thesis::data::{Built, CONFIGS, Data, Frame};
 use crate::sources::thesis::scenes::SceneKey;
 use crate::sources::thesis::structures::{GRID, STRUCTURES};
 use crate::sources::thesis::variant::Variant;
@@ -181,7 +181,7 @@ pub fn mirrors(data: &Data, device: usize) -> Vec<Case> {
 /// Claim 5: the grid is slowest.
 pub fn grid_slowest(data: &Data, device: usize) -> Vec<Case> {
     let ordinary = |scene: &SceneKey| is_uniform(data, scene) == Some(false);
-    by_trio((data, device), &Config::ALL, ordinary, |[grid, kdtree, bvh]| all([less(kdtree, grid), less(bvh, grid)]))
+    by_trio((data, device), &CONFIGS, ordinary, |[grid, kdtree, bvh]| all([less(kdtree, grid), less(bvh, grid)]))
 }
 
 /// The quotients of the time per ray in the smallest and in the largest image, by structure, with both sides.
@@ -190,7 +190,7 @@ type Gains = ([Uncertain; 3], u32, u32);
 fn gains(data: &Data, device: usize) -> Vec<(&SceneKey, Config, Gains)> {
     let mut all = Vec::new();
     for scene in data.scenes.iter().map(|s| &s.key) {
-        for config in Config::ALL {
+        for config in CONFIGS {
             let trios = trios(data, device, scene, config);
             let Some(large) = trios.last() else { continue };
             // The smallest image of the same frames

@@ -2,7 +2,7 @@
 
 use super::{Case, cases, occupancy, options, resolution};
 use crate::sources::claims::Basis;
-use crate::sources::thesis::data::{Data, Failure};
+use crate::sources::thesis::data::{CONFIGS, Data, Failure};
 use crate::sources::thesis::scenes::SceneKey;
 use crate::sources::thesis::structures::{BVH, GRID, KDTREE, RESOLUTION_OPTIONS, STRUCTURES, family};
 use crate::sources::thesis::variant::Variant;
@@ -46,7 +46,7 @@ impl Scope {
     /// No frame times.
     const NONE: Scope = Scope { structures: &[], configs: &[], options: &[], scenes: |_, _| false };
     /// The three structures as the thesis set them.
-    const TRIO: Scope = Scope { structures: &STRUCTURES, configs: &Config::ALL, options: &[], scenes: |_, _| true };
+    const TRIO: Scope = Scope { structures: &STRUCTURES, configs: &CONFIGS, options: &[], scenes: |_, _| true };
 
     /// True if a measurement belongs to it.
     pub fn has(&self, data: &Data, failure: &Failure) -> bool {

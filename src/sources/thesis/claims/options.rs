@@ -3,7 +3,7 @@
 use super::cases::{changed, is_shiny, ms};
 use super::{Case, case as new_case, frame_time};
 use crate::compare::judge::{Uncertain, less, less_by};
-use crate::sources::thesis::data::{Counts, Data, config_adding};
+use crate::sources::thesis::data::{CONFIGS, Counts, Data, config_adding};
 use crate::sources::thesis::structures::{BVH, GRID, KDTREE, STRUCTURES};
 use crate::sources::thesis::variant::Variant;
 use crate::workloads::trace::backend::{Config, RAY_TYPES};
@@ -75,7 +75,7 @@ fn beats_by_counts(
 /// Claim 7: a short stack against restart.
 pub fn short_stack(data: &Data, device: usize) -> Vec<Case> {
     let of = |config| beats(data, device, KDTREE, config, ("search", "restart"), DOUBLE);
-    Config::ALL.into_iter().flat_map(of).collect()
+    CONFIGS.into_iter().flat_map(of).collect()
 }
 
 /// Claim 7, by counts of primary rays.
@@ -116,7 +116,7 @@ pub fn shadow_direction_counts(data: &Data, device: usize) -> Vec<Case> {
 pub fn other_grid(data: &Data, device: usize, structure: &str) -> Vec<Case> {
     let mut cases = Vec::new();
     for scene in data.scenes.iter().map(|s| &s.key) {
-        for config in Config::ALL {
+        for config in CONFIGS {
             let pair = data.sides(device).into_iter().rev().find_map(|side| {
                 let variant = Variant::of_thesis(scene.thesis(), GRID);
                 let of = |structure| data.frame(device, scene, (structure, &variant), config, side);

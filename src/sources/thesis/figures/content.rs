@@ -1,7 +1,7 @@
 //! The content of the figures.
 
 use crate::report::figure::{Axis, Bar, Panel, Picture, STYLES, Series, spreads};
-use crate::sources::thesis::data::{Data, Frame};
+use crate::sources::thesis::data::{CONFIGS, Data, Frame};
 use crate::sources::thesis::published::{GT8600, GTX280};
 use crate::sources::thesis::scenes::SceneKey;
 use crate::sources::thesis::structures::{self, STRUCTURES};
@@ -78,6 +78,8 @@ fn words(config: Config) -> &'static str {
         Config::P => "primary rays",
         Config::PS => "primary and shadow rays",
         Config::PSR => "primary, shadow and reflected rays",
+        Config::AO => "primary and ambient rays",
+        Config::DIFFUSE => "primary and diffuse rays",
     }
 }
 
@@ -92,6 +94,7 @@ fn panel(title: String, x_label: &str, series: Vec<Series>) -> Panel {
         groups: Vec::new(),
         bars: Vec::new(),
         bands: Vec::new(),
+        marks: Vec::new(),
     }
 }
 
@@ -117,7 +120,7 @@ fn picture(title: String, mut panels: Vec<Panel>) -> Picture {
 /// Figure 5.1: one line per scene.
 fn grid_resolution(data: &Data, device: usize) -> Vec<Drawn> {
     let mut drawn = Vec::new();
-    for config in Config::ALL {
+    for config in CONFIGS {
         let mut series = Vec::new();
         for scene in &data.scenes {
             let points = grid_sweep(data, device, &scene.key, config);
@@ -160,7 +163,7 @@ const SIDE: &str = "pixels a side";
 /// Figure 5.2: a panel per scene, a line per structure.
 fn image_resolution(data: &Data, device: usize) -> Vec<Drawn> {
     let mut drawn = Vec::new();
-    for config in Config::ALL {
+    for config in CONFIGS {
         let mut panels = Vec::new();
         for scene in &data.scenes {
             let of = |structure: &&str| {
@@ -268,7 +271,7 @@ fn variants_with<'a>(
 
 /// Bars of frame times: groups by scene, a bar per structure with its default options.
 fn bars(data: &Data, device: usize) -> Vec<Drawn> {
-    Config::ALL.into_iter().filter_map(|config| bars_of(data, device, config)).collect()
+    CONFIGS.into_iter().filter_map(|config| bars_of(data, device, config)).collect()
 }
 
 fn bars_of(data: &Data, device: usize, config: Config) -> Option<Drawn> {
@@ -309,7 +312,8 @@ fn bars_of(data: &Data, device: usize, config: Config) -> Option<Drawn> {
         ticks: (0..groups.len()).map(|group| group as f64).collect(),
     };
     let label = &data.devices[device].label;
-    let panel = Panel { title: String::new(), x, y, series: Vec::new(), groups, bars, bands: Vec::new() };
+    let panel =
+        Panel { title: String::new(), x, y, series: Vec::new(), groups, bars, bands: Vec::new(), marks: Vec::new() };
     let title = format!("Frame times at {side}x{side}, {config:?}, {label}");
     let caption = format!("Frame times at {side}x{side} ({}).", words(config));
     Some((format!("-{config:?}").to_lowercase(), caption, picture(title, vec![panel])))

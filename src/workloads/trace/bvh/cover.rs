@@ -1,7 +1,61 @@
-//! Whether some boxes together hold every point of a triangle.
+//! Whether the leaves of a tree of boxes hold every triangle, and whether some boxes together hold every point of one.
+//!
+//! A builder may divide a triangle into several references. The leaf of each holds a part of the triangle's box, which
+//! a builder enlarges so that no hit is lost; what is asked of all of them together is that they cover the triangle.
 
 use crate::math::Aabb;
+use crate::workloads::trace::TriangleRef;
+use crate::workloads::trace::common::check::{Expected, Verdict, ensure, same};
 use glam::DVec3;
+
+/// What leaves hold of the triangles.
+pub(crate) struct Cover<'a> {
+    expected: &'a Expected<'a>,
+    /// Box around the parts of every triangle's box; empty for a triangle of no leaf.
+    spans: Vec<Aabb>,
+    /// Triangle and part of its box of every reference.
+    parts: Vec<(u32, Aabb)>,
+}
+
+impl<'a> Cover<'a> {
+    pub fn new(expected: &'a Expected<'a>) -> Cover<'a> {
+        Cover { expected, spans: vec![Aabb::EMPTY; expected.boxes.len()], parts: Vec::new() }
+    }
+
+    /// Adds a leaf of this box, named `what`; returns the box around its triangles, each clipped to the leaf.
+    pub fn leaf(&mut self, what: &str, leaf: Aabb, triangle_refs: &[TriangleRef]) -> Result<Aabb, String> {
+        let mut tight = Aabb::EMPTY;
+        for (i, triangle_ref) in triangle_refs.iter().enumerate() {
+            let triangle = triangle_ref.triangle;
+            let is_new = triangle_refs[..i].iter().all(|r| r.triangle != triangle);
+            ensure!(is_new, "{what} has triangle {triangle} twice");
+            let whole = self.expected.aabb(triangle);
+            let part = Aabb { min: whole.min.max(leaf.min), max: whole.max.min(leaf.max) };
+            ensure!(!part.is_empty(), "triangle {triangle} lies outside its leaf, {what}");
+            let span = &mut self.spans[triangle as usize];
+            *span = span.union(part);
+            self.parts.push((triangle, part));
+            tight = tight.union(part);
+        }
+        Ok(tight)
+    }
+
+    /// Checks that every triangle is in a leaf, and that the leaves of those that are divided hold all of them.
+    pub fn check(mut self) -> Verdict {
+        for &triangle in &self.expected.hittable {
+            let (span, whole) = (self.spans[triangle as usize], self.expected.aabb(triangle));
+            ensure!(!span.is_empty(), "triangle {triangle} is in no leaf");
+            ensure!(same(span, whole), "the leaves of triangle {triangle} span {span:?} of its box {whole:?}");
+        }
+        self.parts.sort_by_key(|(triangle, _)| *triangle);
+        for parts in self.parts.chunk_by(|(a, _), (b, _)| a == b).filter(|parts| parts.len() > 1) {
+            let triangle = parts[0].0;
+            let is_whole = is_covered(self.expected.corners(triangle), parts.iter().map(|(_, part)| *part));
+            ensure!(is_whole, "the {} leaves of triangle {triangle} do not cover it", parts.len());
+        }
+        Ok(())
+    }
+}
 
 /// A convex part of a triangle: its corners in order.
 type Polygon = Vec<DVec3>;

@@ -4,10 +4,10 @@ mod bins;
 pub mod build;
 pub(crate) mod check;
 mod clip;
-mod cover;
+pub(crate) mod cover;
 mod layout;
 mod lists;
-mod options;
+pub(in crate::workloads::trace) mod options;
 pub mod packet;
 mod partition;
 pub mod ploc;
@@ -16,13 +16,12 @@ pub mod spatial;
 mod spatial_bins;
 pub mod stack;
 pub mod sweep;
-mod widened;
+pub(in crate::workloads::trace) mod widened;
 
 pub use layout::{Bvh, BvhNode, DEPTH_LIMIT, MAX_DEPTH, MAX_LEAF, MAX_REFERENCES, SpatialSplits};
 
 use super::algorithm::{Builder, Made};
 use super::common::estimate::{CLOSE, Estimate, FAR, VERTEX};
-use super::options::{Axis, Kind, OptionInfo};
 use super::selection::Selection;
 use super::structure::StructureKind;
 use crate::device::vulkan::Texel;
@@ -38,7 +37,7 @@ static TOP_DOWN: Builder = Builder {
     options: options::OPTIONS,
     parallel: true,
     purpose: |_| "",
-    build: options::build,
+    build: |s, scene| options::build(s, scene).map(made),
     estimate: Some(estimate),
     on_device: Some(options::build_on_device),
 };
@@ -46,26 +45,28 @@ static TOP_DOWN: Builder = Builder {
 /// PLOC with reinsertion, by obvhs.
 static PLOC: Builder = Builder {
     name: "ploc",
-    options: PLOC_OPTIONS,
+    options: &[options::PRESET],
     parallel: true,
     purpose: |_| "",
-    build: build_ploc,
+    build: |s, scene| build_ploc(s, scene).map(made),
     estimate: None,
     on_device: None,
 };
 
-const PLOC_OPTIONS: &[OptionInfo] =
-    &[OptionInfo::new(Axis::Build, "preset", "medium", "obvhs's preset", Kind::Word(&ploc::PRESETS))];
+fn made((bvh, note): (Bvh, String)) -> Made {
+    Made { structure: Arc::new(bvh), note }
+}
 
-fn build_ploc(s: &Selection, scene: &Scene) -> Result<Made> {
+/// PLOC with reinsertion, or another tree and a note that says so.
+fn build_ploc(s: &Selection, scene: &Scene) -> Result<(Bvh, String)> {
     let params = ploc::preset(s.value("preset")).expect("the table lists the presets");
     if let Some(bvh) = ploc::build(scene, params)? {
-        return Ok(Made::of(bvh));
+        return Ok((bvh, String::new()));
     }
     let bvh = build::build(scene, &build::Config::default())?;
     let note =
         "built as bvh: PLOC would take excessive time over so many boxes that are equal, in a row or inside each other";
-    Ok(Made { structure: Arc::new(bvh), note: note.to_owned() })
+    Ok((bvh, note.to_owned()))
 }
 
 /// Nodes per triangle with leaves of at most four: the median over the nine scenes of the thesis (table 5.6).

@@ -2,13 +2,13 @@
 
 use super::spatial::SpatialConfig;
 use super::spatial_bins::MAX_SPATIAL_BINS;
-use super::{DEPTH_LIMIT, build, sweep};
+use super::{Bvh, DEPTH_LIMIT, build, build_ploc, ploc, sweep};
 use crate::device::{Interrupted, VulkanDevice};
 use crate::error::Result;
 use crate::scene::Scene;
 use crate::workloads::trace::algorithm::Made;
 use crate::workloads::trace::build::gpu::{self, BuildTimes};
-use crate::workloads::trace::build::{lbvh, ploc};
+use crate::workloads::trace::build::{lbvh, ploc as clusters};
 use crate::workloads::trace::common::sah::CostModel;
 use crate::workloads::trace::options::{Axis, Kind, OptionInfo};
 use crate::workloads::trace::selection::Selection;
@@ -16,20 +16,23 @@ use crate::workloads::trace::selection::Selection;
 const BINNED: &str = "binned";
 const SWEEP: &str = "sweep";
 const SPATIAL: &str = "spatial";
+const PLOC: &str = "ploc";
 const LBVH: &str = "lbvh";
 const PLOC_PASSES: &str = "ploc-passes";
 
-pub(super) const OPTIONS: &[OptionInfo] = &[
+pub(in crate::workloads::trace) const OPTIONS: &[OptionInfo] = &[
     OptionInfo::new(
         Axis::Build,
         "build",
         BINNED,
-        "splits between bins of centroids, between any two triangles (sweep), or also through triangles (spatial); in \
-         passes on the device: by the bits of Morton codes (lbvh), or by merging neighbours (ploc-passes)",
-        Kind::Word(&[BINNED, SWEEP, SPATIAL, LBVH, PLOC_PASSES]),
+        "splits between bins of centroids, between any two triangles (sweep), or also through triangles (spatial); \
+         obvhs's clustering (ploc); in passes on the device: by the bits of Morton codes (lbvh), or by merging neighbours \
+         (ploc-passes)",
+        Kind::Word(&[BINNED, SWEEP, SPATIAL, PLOC, LBVH, PLOC_PASSES]),
     ),
     OptionInfo::new(Axis::Build, "bins", "16", "bins per axis", Kind::Count(2, 32)).idle_if(is_not_binned),
-    OptionInfo::new(Axis::Build, "max_leaf", "4", "split until at most so many triangles", Kind::Count(1, 15)),
+    OptionInfo::new(Axis::Build, "max_leaf", "4", "split until at most so many triangles", Kind::Count(1, 15))
+        .idle_if(has_preset),
     OptionInfo::new(
         Axis::Build,
         "kt",
@@ -37,7 +40,7 @@ pub(super) const OPTIONS: &[OptionInfo] = &[
         "cost of a traversal step: with it, nodes within max_leaf are split, too, where that is cheaper; inf: never",
         Kind::Number(0.0, f64::INFINITY),
     )
-    .idle_if(is_in_passes),
+    .idle_if(has_no_splits),
     OptionInfo::new(Axis::Build, "ki", "1", "cost of a triangle test", Kind::Number(1e-6, 1e6)).idle_if(no_costs),
     OptionInfo::new(
         Axis::Build,
@@ -62,7 +65,7 @@ pub(super) const OPTIONS: &[OptionInfo] = &[
         "greatest depth, near which nodes are halved; stacks are sized by the depth of the tree that was built",
         Kind::Count(1, DEPTH_LIMIT),
     )
-    .idle_if(is_in_passes),
+    .idle_if(has_no_splits),
     OptionInfo::new(
         Axis::Build,
         "alpha",
@@ -103,7 +106,20 @@ pub(super) const OPTIONS: &[OptionInfo] = &[
         Kind::Count(1, 64),
     )
     .idle_if(is_no_clustering),
+    PRESET.idle_if(has_no_preset),
 ];
+
+pub(super) const PRESET: OptionInfo =
+    OptionInfo::new(Axis::Build, "preset", "medium", "obvhs's preset", Kind::Word(&ploc::PRESETS));
+
+fn has_preset(s: &Selection) -> Option<String> {
+    (s.value("build") == PLOC).then(|| format!("build={PLOC} is set by preset"))
+}
+
+fn has_no_preset(s: &Selection) -> Option<String> {
+    let build = s.value("build");
+    (build != PLOC).then(|| format!("build={build} has no presets"))
+}
 
 fn no_costs(s: &Selection) -> Option<String> {
     (s.value("kt") == "inf").then(|| "costs are compared only with kt".to_owned())
@@ -114,8 +130,9 @@ fn works_in_passes(s: &Selection) -> bool {
     [LBVH, PLOC_PASSES].contains(&s.value("build"))
 }
 
-fn is_in_passes(s: &Selection) -> Option<String> {
-    works_in_passes(s).then(|| format!("build={} looks for no splits", s.value("build")))
+fn has_no_splits(s: &Selection) -> Option<String> {
+    let is_clustered = works_in_passes(s) || s.value("build") == PLOC;
+    is_clustered.then(|| format!("build={} looks for no splits", s.value("build")))
 }
 
 fn is_no_clustering(s: &Selection) -> Option<String> {
@@ -123,13 +140,13 @@ fn is_no_clustering(s: &Selection) -> Option<String> {
     (build != PLOC_PASSES).then(|| format!("build={build} merges no clusters"))
 }
 
-fn clustering(s: &Selection) -> ploc::Config {
-    ploc::Config { radius: s.size("radius") as u32, max_leaf: s.size("max_leaf") as u32 }
+fn clustering(s: &Selection) -> clusters::Config {
+    clusters::Config { radius: s.size("radius") as u32, max_leaf: s.size("max_leaf") as u32 }
 }
 
 fn has_no_choice_of_axes(s: &Selection) -> Option<String> {
     let is_binned = s.value("build") == BINNED;
-    is_binned.then(|| format!("build={BINNED} has bins on all axes")).or_else(|| is_in_passes(s))
+    is_binned.then(|| format!("build={BINNED} has bins on all axes")).or_else(|| has_no_splits(s))
 }
 
 fn is_not_binned(s: &Selection) -> Option<String> {
@@ -148,17 +165,21 @@ fn is_not_spatial(s: &Selection) -> Option<String> {
     (build != SPATIAL).then(|| format!("build={build} has no spatial splits"))
 }
 
-pub(super) fn build(s: &Selection, scene: &Scene) -> Result<Made> {
+/// The BVH that the options describe; with a note where it is another one.
+pub(in crate::workloads::trace) fn build(s: &Selection, scene: &Scene) -> Result<(Bvh, String)> {
+    if s.value("build") == PLOC {
+        return build_ploc(s, scene);
+    }
     let cost = CostModel { traversal: s.number("kt"), intersection: s.number("ki") };
     let (max_leaf, max_depth) = (s.size("max_leaf"), s.size("max_depth") as u32);
     match s.value("build") {
-        LBVH => return Ok(Made::of(lbvh::build(scene, max_leaf as u32)?)),
-        PLOC_PASSES => return Ok(Made::of(ploc::build(scene, &clustering(s))?)),
+        LBVH => return Ok((lbvh::build(scene, max_leaf as u32)?, String::new())),
+        PLOC_PASSES => return Ok((clusters::build(scene, &clustering(s))?, String::new())),
         _ => {}
     }
     if s.value("build") == BINNED {
         let config = build::Config { bins: s.size("bins"), max_leaf, cost, max_depth };
-        return Ok(Made::of(build::build(scene, &config)?));
+        return Ok((build::build(scene, &config)?, String::new()));
     }
     let spatial = (s.value("build") == SPATIAL).then(|| SpatialConfig {
         alpha: s.number("alpha") as f32,
@@ -169,7 +190,7 @@ pub(super) fn build(s: &Selection, scene: &Scene) -> Result<Made> {
     let sorting = if s.value("sorting") == "once" { sweep::Sorting::Once } else { sweep::Sorting::EveryNode };
     let longest_axis = s.value("axes") == "longest";
     let config = sweep::Config { max_leaf, cost, max_depth, sorting, longest_axis, spatial };
-    Ok(Made::of(sweep::build(scene, &config)?))
+    Ok((sweep::build(scene, &config)?, String::new()))
 }
 
 /// Builds on a device what is built in passes.

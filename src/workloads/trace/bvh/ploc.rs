@@ -55,42 +55,84 @@ fn is_endless(prims: &[Prim], bounds: &Aabb) -> bool {
     ploc_passes::looks(prims, bounds, unit(bounds), most) > most
 }
 
+/// What obvhs is given of a scene. It multiplies extents in f32, so it gets the scene scaled to about 1, and only the
+/// tree is taken from it.
+pub(in crate::workloads::trace) struct Given<'a> {
+    pub scene: &'a Scene,
+    /// Box around all triangles that can be hit.
+    pub bounds: Aabb,
+    /// Index in the scene of every triangle that can be hit.
+    pub triangles: Vec<u32>,
+    scale: f64,
+    /// Set if triangles may be split.
+    margin: Option<f32>,
+}
+
+impl<'a> Given<'a> {
+    /// All triangles that can be hit; `None` where PLOC would take excessive time.
+    ///
+    /// # Errors
+    /// [`crate::Error::Refused`] if there are more triangles than a structure can hold.
+    pub fn of(scene: &'a Scene, pre_split: bool) -> Result<Option<Given<'a>>> {
+        let (prims, bounds) = prims::prims(scene)?;
+        check_number(scene, prims.len())?;
+        if is_endless(&prims, &bounds) {
+            return Ok(None);
+        }
+        let (scale, margin) = (scale(&bounds), pre_split.then(|| margin(&bounds)));
+        Ok(Some(Given { scene, bounds, triangles: prims.iter().map(|p| p.triangle()).collect(), scale, margin }))
+    }
+
+    /// The triangles in obvhs's type.
+    pub fn obvhs_triangles(&self) -> Vec<Triangle> {
+        let scaled = |&triangle: &u32| {
+            let [v0, v1, v2] = self.scene.corners(triangle).map(|c| (c.as_dvec3() * self.scale).as_vec3a());
+            Triangle { v0, v1, v2 }
+        };
+        self.triangles.par_iter().map(scaled).collect()
+    }
+
+    /// The triangles of a leaf by obvhs's numbers, each once: two halves of a split triangle may have met again.
+    pub fn leaf(&self, numbers: &[u32]) -> Vec<u32> {
+        let mut triangles: Vec<u32> = numbers.iter().map(|&i| self.triangles[i as usize]).collect();
+        triangles.sort_unstable();
+        triangles.dedup();
+        triangles
+    }
+
+    /// What a leaf with this box of obvhs's holds of its triangles, where they may be split.
+    pub fn limit(&self, leaf: &obvhs::aabb::Aabb) -> Option<Aabb> {
+        self.margin.map(|margin| {
+            let back = |v: glam::Vec3A| (v.as_dvec3() / self.scale).as_vec3();
+            let (min, max) = (back(leaf.min), back(leaf.max));
+            Aabb { min: min - Vec3::splat(margin), max: max + Vec3::splat(margin) }
+        })
+    }
+
+    /// The box of a triangle as far as it lies within a limit.
+    pub fn part(&self, triangle: u32, limit: Option<Aabb>) -> Aabb {
+        let whole = Aabb::from_points(self.scene.corners(triangle).map(Vec3::from));
+        let within = |limit: Aabb| Aabb { min: whole.min.max(limit.min), max: whole.max.min(limit.max) };
+        limit.map_or(whole, within)
+    }
+}
+
 /// Builds a BVH over all triangles that can be hit, on the threads of the current rayon pool; `None` where PLOC would
 /// take excessive time, as it does over many boxes that are equal, in a row or inside each other.
 ///
 /// # Errors
-/// [`crate::Error::Input`] if there are more triangles than a structure can hold.
+/// [`crate::Error::Refused`] if there are more triangles than a structure can hold.
 pub fn build(scene: &Scene, params: BvhBuildParams) -> Result<Option<Bvh>> {
-    let (prims, bounds) = prims::prims(scene)?;
-    if prims.is_empty() {
-        return Ok(Some(Bvh {
-            bounds,
-            nodes: vec![BvhNode::NONE; 2],
-            triangle_refs: Vec::new(),
-            depth: 0,
-            spatial: None,
-        }));
+    let Some(given) = Given::of(scene, params.pre_split)? else { return Ok(None) };
+    let bounds = given.bounds;
+    if given.triangles.is_empty() {
+        let nodes = vec![BvhNode::NONE; 2];
+        return Ok(Some(Bvh { bounds, nodes, triangle_refs: Vec::new(), depth: 0, spatial: None }));
     }
-    check_number(scene, prims.len())?;
-    if is_endless(&prims, &bounds) {
-        return Ok(None);
-    }
-    // obvhs multiplies extents in f32: it gets the scene scaled to about 1, and only the tree is taken from it.
-    let scale = scale(&bounds);
-    let triangles: Vec<Triangle> = prims
-        .par_iter()
-        .map(|prim| {
-            let [v0, v1, v2] = scene.corners(prim.triangle()).map(|c| (c.as_dvec3() * scale).as_vec3a());
-            Triangle { v0, v1, v2 }
-        })
-        .collect();
-    let tree = build_bvh2_from_tris(&triangles, params, &mut Default::default());
+    let tree = build_bvh2_from_tris(&given.obvhs_triangles(), params, &mut Default::default());
     let mut copy = Copy {
-        scene,
+        given: &given,
         tree: &tree,
-        triangles: prims.iter().map(|p| p.triangle()).collect(),
-        scale,
-        margin: params.pre_split.then(|| margin(&bounds)),
         nodes: vec![BvhNode::NONE; 2],
         triangle_refs: Vec::with_capacity(tree.primitive_indices.len()),
         depth: 0,
@@ -113,13 +155,8 @@ fn margin(bounds: &Aabb) -> f32 {
 }
 
 struct Copy<'a> {
-    scene: &'a Scene,
+    given: &'a Given<'a>,
     tree: &'a Bvh2,
-    /// Index in the scene of every triangle that obvhs was given.
-    triangles: Vec<u32>,
-    scale: f64,
-    /// Set if triangles may have been split.
-    margin: Option<f32>,
     nodes: Vec<BvhNode>,
     triangle_refs: Vec<crate::workloads::trace::TriangleRef>,
     depth: u32,
@@ -199,25 +236,13 @@ impl Copy<'_> {
     fn leaf(&mut self, node: &Bvh2Node, depth: u32) -> BvhNode {
         self.depth = self.depth.max(depth);
         let range = node.first_index as usize..(node.first_index + node.prim_count) as usize;
-        let mut triangles: Vec<u32> =
-            self.tree.primitive_indices[range].iter().map(|&i| self.triangles[i as usize]).collect();
-        // Two halves of a split triangle may have met again.
-        triangles.sort_unstable();
-        triangles.dedup();
-        let limit = self.margin.map(|margin| {
-            let back = |v: glam::Vec3A| (v.as_dvec3() / self.scale).as_vec3();
-            let (min, max) = (back(node.aabb().min), back(node.aabb().max));
-            Aabb { min: min - Vec3::splat(margin), max: max + Vec3::splat(margin) }
-        });
+        let triangles = self.given.leaf(&self.tree.primitive_indices[range]);
+        let limit = self.given.limit(node.aabb());
         let first = self.triangle_refs.len() as u32;
         let mut bounds = Aabb::EMPTY;
         for &triangle in &triangles {
-            let whole = Aabb::from_points(self.scene.corners(triangle).map(Vec3::from));
-            bounds = bounds.union(match limit {
-                Some(limit) => Aabb { min: whole.min.max(limit.min), max: whole.max.min(limit.max) },
-                None => whole,
-            });
-            self.triangle_refs.push(prims::triangle_ref(self.scene, triangle));
+            bounds = bounds.union(self.given.part(triangle, limit));
+            self.triangle_refs.push(prims::triangle_ref(self.given.scene, triangle));
         }
         BvhNode { min: bounds.min.into(), first, max: bounds.max.into(), count: triangles.len() as u32 }
     }

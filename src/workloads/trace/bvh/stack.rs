@@ -1,4 +1,5 @@
-//! BVH, one ray at a time with a private stack, nearer child first. Twin of `kernels/trace/bvh/stack.wgsl`.
+//! BVH, one ray at a time with a private stack, nearer child first. Twin of `kernels/trace/bvh/stack.wgsl`, and of
+//! every kernel with the loops of `kernels/trace/bvh/walk.wgsl`.
 //!
 //! With `cull=off`, boxes are never compared with the nearest hit so far: a ray visits every node that it meets before
 //! its limit, as in a thesis of 2010 (the source `rt2`).
@@ -8,8 +9,11 @@ use crate::workloads::trace::algorithm::{Algorithm, Parameter, Parameters, Trave
 use crate::workloads::trace::bvh::widened::{self, Widening};
 use crate::workloads::trace::bvh::{Bvh, BvhNode, KIND, PLOC, TOP_DOWN};
 use crate::workloads::trace::count::Count;
+use crate::workloads::trace::cpu::TwinInput;
 use crate::workloads::trace::options::{Axis, GROUP, Kind, OptionInfo};
+use crate::workloads::trace::selection::Selection;
 use crate::workloads::trace::traverse::{Best, STACK_SIZE, TraverseIndependent, Triangles};
+use glam::Vec3A;
 
 /// A stack per ray in the same BVH as that of packets.
 pub static BVH_STACK: Algorithm = Algorithm {
@@ -37,19 +41,22 @@ pub static PLOC_STACK: Algorithm = Algorithm {
 pub static STACK: Traversal = Traversal {
     kernel: "trace/bvh/stack.wgsl",
     structure: &KIND,
-    parameters: |s| {
-        let cull = ("CULL", Parameter::Flag(s.value("cull") == "on"));
-        Parameters::of(&[cull, widened::parameter(s)])
-    },
+    parameters,
     twin: Some(|input| {
-        let parameters = input.method.parameters;
-        let bvh = input.structure()?;
-        Ok(input.with(BvhStack::new(input.triangles(), bvh, parameters.flag("CULL"), Widening::of(&input, bvh))))
+        let bvh: &Bvh = input.structure()?;
+        Ok(input.with(StackSearch::new(&input, InPairs(bvh))))
     }),
+    leaf_order: true,
     ..Traversal::INDEPENDENT
 };
 
-const CULL: OptionInfo = OptionInfo::new(
+/// The parameters of the loops.
+pub(in crate::workloads::trace) fn parameters(s: &Selection) -> Parameters {
+    Parameters::of(&[("CULL", Parameter::Flag(s.value("cull") == "on")), widened::parameter(s)])
+}
+
+/// Which boxes are compared with hits.
+pub(in crate::workloads::trace) const CULL: OptionInfo = OptionInfo::new(
     Axis::Traversal,
     "cull",
     "on",
@@ -69,8 +76,6 @@ pub const LEAF: u32 = 0x8000_0000;
 /// A leaf without triangle references: the bottom of every stack, and an empty tree's root.
 pub const EMPTY: u32 = LEAF;
 
-const BOTTOM: u32 = u32::MAX;
-
 /// First triangle reference and count of a leaf's reference.
 #[inline(always)]
 pub fn leaf_triangle_refs(reference: u32) -> (u32, u32) {
@@ -83,84 +88,160 @@ pub fn overlaps((near, far): (f32, f32), t: f32) -> bool {
     near.max(0.0) <= far.min(t)
 }
 
-/// A ray's stack; the lowest entry is BOTTOM.
-struct Stack {
-    node: [u32; STACK_SIZE],
-    /// Distance at which the node's box begins.
-    t: [f32; STACK_SIZE],
-    depth: usize,
+/// Pairs of siblings, in whichever layout.
+pub(in crate::workloads::trace) trait Pairs: Sync {
+    /// One of two siblings.
+    type Node;
+
+    /// The box around everything, and what it leads to.
+    fn root(&self) -> (Vec3A, Vec3A, u32);
+
+    /// The children of an inner node, left and right.
+    fn children(&self, reference: u32) -> &[Self::Node; 2];
+
+    /// The box of a node.
+    fn corners(&self, node: &Self::Node) -> (Vec3A, Vec3A);
+
+    /// What a node leads to.
+    fn reference(&self, node: &Self::Node) -> u32;
 }
 
-/// See the module.
-pub struct BvhStack<'a> {
-    triangles: Triangles<'a>,
-    /// Siblings together.
-    pairs: &'a [[BvhNode; 2]],
-    cull: bool,
-    widening: Widening,
-}
+impl Pairs for Bvh {
+    type Node = BvhNode;
 
-impl<'a> BvhStack<'a> {
-    /// A traversal of a built BVH.
-    pub fn new(triangles: Triangles<'a>, bvh: &'a Bvh, cull: bool, widening: Widening) -> Self {
-        BvhStack { triangles, pairs: bvh.nodes.as_chunks().0, cull, widening }
+    fn root(&self) -> (Vec3A, Vec3A, u32) {
+        let (min, max) = self.nodes[0].corners();
+        (min, max, self.nodes[0].reference())
     }
 
-    /// The node on top of the stack, if its box begins before `t`; or the next one of which that is true, or EMPTY.
     #[inline(always)]
-    fn pop<C: Count>(&self, t: f32, stack: &mut Stack, count: &mut C) -> u32 {
+    fn children(&self, reference: u32) -> &[BvhNode; 2] {
+        &self.nodes.as_chunks().0[reference as usize / 2]
+    }
+
+    #[inline(always)]
+    fn corners(&self, node: &BvhNode) -> (Vec3A, Vec3A) {
+        node.corners()
+    }
+
+    #[inline(always)]
+    fn reference(&self, node: &BvhNode) -> u32 {
+        node.reference()
+    }
+}
+
+/// A ray's stack (`kernels/trace/bvh/walk.wgsl`); the lowest entry is EMPTY.
+pub(in crate::workloads::trace) struct Stack {
+    /// References of nodes.
+    pub node: [u32; STACK_SIZE],
+    /// Distances at which the nodes' boxes begin.
+    pub t: [f32; STACK_SIZE],
+    /// Number of entries.
+    pub depth: usize,
+}
+
+impl Stack {
+    /// Only the lowest entry.
+    #[inline(always)]
+    pub fn new() -> Stack {
+        Stack { node: [EMPTY; STACK_SIZE], t: [-1.0; STACK_SIZE], depth: 1 }
+    }
+
+    /// The node on top, if its box begins before `t`; or the next one of which that is true, or EMPTY.
+    #[inline(always)]
+    pub fn pop<C: Count>(&mut self, t: f32, count: &mut C) -> u32 {
         loop {
-            stack.depth -= 1;
-            let node = stack.node[stack.depth];
-            if node == BOTTOM {
-                return EMPTY;
+            self.depth -= 1;
+            if self.depth > 0 {
+                count.pop();
             }
-            count.pop();
-            if stack.t[stack.depth] <= t {
-                return self.pairs[node as usize / 2][node as usize % 2].reference();
+            if self.t[self.depth] <= t {
+                return self.node[self.depth];
             }
         }
     }
 
-    /// Goes down, nearer child first, to a leaf, or to EMPTY if no box that begins before `t` is left.
+    /// Adds a node on top.
     #[inline(always)]
-    fn walk_to_leaf<C: Count>(&self, ray: &Ray, t: f32, mut reference: u32, stack: &mut Stack, count: &mut C) -> u32 {
+    pub fn push(&mut self, node: u32, t: f32) {
+        self.node[self.depth] = node;
+        self.t[self.depth] = t;
+        self.depth += 1;
+    }
+}
+
+/// How to go down in a tree of boxes.
+pub(in crate::workloads::trace) trait Down: Sync {
+    /// The box around everything, and what it leads to.
+    fn root(&self) -> (Vec3A, Vec3A, u32);
+
+    /// Goes down, nearest child first, to a leaf, or to EMPTY if no box that begins before `t` is left.
+    fn walk_to_leaf<C: Count>(&self, ray: &Ray, t: f32, from: u32, stack: &mut Stack, count: &mut C) -> u32;
+}
+
+/// In pairs of boxes (`kernels/trace/bvh/while_while.wgsl`).
+pub(in crate::workloads::trace) struct InPairs<'a, P>(pub &'a P);
+
+impl<P: Pairs> Down for InPairs<'_, P> {
+    fn root(&self) -> (Vec3A, Vec3A, u32) {
+        self.0.root()
+    }
+
+    #[inline(always)]
+    fn walk_to_leaf<C: Count>(&self, ray: &Ray, t: f32, from: u32, stack: &mut Stack, count: &mut C) -> u32 {
+        let pairs = self.0;
+        let mut reference = from;
         while reference & LEAF == 0 {
             count.inner();
             count.box_tests(2);
-            let [left, right] = &self.pairs[reference as usize / 2];
-            let (min, max) = left.corners();
+            let [left, right] = pairs.children(reference);
+            let (min, max) = pairs.corners(left);
             let l = ray_box(ray, min, max);
-            let (min, max) = right.corners();
+            let (min, max) = pairs.corners(right);
             let r = ray_box(ray, min, max);
             reference = match (overlaps(l, t), overlaps(r, t)) {
                 (true, true) => {
-                    let right_first = r.0 < l.0;
-                    stack.node[stack.depth] = reference + !right_first as u32;
-                    stack.t[stack.depth] = l.0.max(r.0);
-                    stack.depth += 1;
-                    if right_first { right.reference() } else { left.reference() }
+                    let (near, far) = if r.0 < l.0 { (right, left) } else { (left, right) };
+                    stack.push(pairs.reference(far), l.0.max(r.0));
+                    pairs.reference(near)
                 }
-                (true, false) => left.reference(),
-                (false, true) => right.reference(),
-                (false, false) => self.pop(t, stack, count),
+                (true, false) => pairs.reference(left),
+                (false, true) => pairs.reference(right),
+                (false, false) => stack.pop(t, count),
             }
         }
         reference
     }
 }
 
-impl TraverseIndependent for BvhStack<'_> {
+/// See the module.
+pub(in crate::workloads::trace) struct StackSearch<'a, D> {
+    triangles: Triangles<'a>,
+    down: D,
+    root: (Vec3A, Vec3A, u32),
+    cull: bool,
+    widening: Widening,
+}
+
+impl<'a, D: Down> StackSearch<'a, D> {
+    /// A traversal of a built tree.
+    pub fn new(input: &TwinInput<'a>, down: D) -> Self {
+        let root = down.root();
+        let (cull, widening) = (input.method.parameters.flag("CULL"), Widening::around(input, (root.0, root.1)));
+        StackSearch { triangles: input.triangles(), down, root, cull, widening }
+    }
+}
+
+impl<D: Down> TraverseIndependent for StackSearch<'_, D> {
     fn traverse<const ANY: bool, C: Count>(&self, ray: &Ray, limit: f32, count: &mut C) -> u32 {
         let mut best = Best::before(limit);
-        let mut stack = Stack { node: [BOTTOM; STACK_SIZE], t: [-1.0; STACK_SIZE], depth: 1 };
-        let root = &self.pairs[0][0];
-        let (min, max) = root.corners();
+        let mut stack = Stack::new();
+        let (min, max, root) = self.root;
         let wide = self.widening.widened(ray);
-        let mut reference = if overlaps(ray_box(&wide, min, max), limit) { root.reference() } else { EMPTY };
+        let mut reference = if overlaps(ray_box(&wide, min, max), limit) { root } else { EMPTY };
         loop {
             let reach = if self.cull { best.t } else { limit };
-            reference = self.walk_to_leaf(&wide, reach, reference, &mut stack, count);
+            reference = self.down.walk_to_leaf(&wide, reach, reference, &mut stack, count);
             if reference == EMPTY {
                 return best.triangle_ref;
             }
@@ -170,7 +251,7 @@ impl TraverseIndependent for BvhStack<'_> {
                 return best.triangle_ref;
             }
             let reach = if self.cull { best.t } else { limit };
-            reference = self.pop(reach, &mut stack, count);
+            reference = stack.pop(reach, count);
         }
     }
 }

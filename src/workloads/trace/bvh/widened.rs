@@ -23,13 +23,13 @@ const NAME: &str = "WIDENED";
 const SHARE: f32 = 1.0 / (1 << 20) as f32;
 
 /// The parameter of every traversal of BVHs: true for selections whose builder clips triangles.
-pub(super) fn parameter(s: &Selection) -> (&'static str, Parameter) {
+pub(in crate::workloads::trace) fn parameter(s: &Selection) -> (&'static str, Parameter) {
     let presplit = |preset: &str| ploc::preset(preset).is_some_and(|params| params.pre_split);
     flag(s.find("build") == Some("spatial") || s.find("preset").is_some_and(presplit))
 }
 
 /// The parameter with this value.
-pub(super) fn flag(is_clipped: bool) -> (&'static str, Parameter) {
+pub(in crate::workloads::trace) fn flag(is_clipped: bool) -> (&'static str, Parameter) {
     (NAME, Parameter::Flag(is_clipped))
 }
 
@@ -42,7 +42,12 @@ pub struct Widening {
 impl Widening {
     /// As the method says.
     pub(super) fn of(input: &TwinInput, bvh: &Bvh) -> Widening {
-        Widening { root: input.method.parameters.flag(NAME).then(|| bvh.nodes[0].corners()) }
+        Widening::around(input, bvh.nodes[0].corners())
+    }
+
+    /// The same for a tree with this box around everything.
+    pub(in crate::workloads::trace) fn around(input: &TwinInput, root: (Vec3A, Vec3A)) -> Widening {
+        Widening { root: input.method.parameters.flag(NAME).then_some(root) }
     }
 
     /// The rays of a work-group for box tests.
@@ -52,7 +57,7 @@ impl Widening {
 
     /// The ray for box tests.
     #[inline(always)]
-    pub(super) fn widened(&self, ray: &Ray) -> Ray {
+    pub(in crate::workloads::trace) fn widened(&self, ray: &Ray) -> Ray {
         let Some((min, max)) = self.root else { return *ray };
         let reach = (min - ray.origin).abs().max((max - ray.origin).abs());
         let margin = Vec3A::splat(reach.max_element() * SHARE);

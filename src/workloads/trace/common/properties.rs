@@ -30,6 +30,8 @@ pub struct Properties {
     pub depth: Option<u32>,
     /// Trees: expected cost of a ray by the default cost model ([`super::sah::CostModel`]).
     pub sah_cost: Option<f64>,
+    /// Trees of more than two children a node, and of quantised boxes: children per node.
+    pub children_per_node: Option<f64>,
     /// BVHs with spatial splits: inner nodes that are such splits.
     pub spatial_splits: Option<u32>,
     /// BVHs with spatial splits: the largest share of a node's volume that the boxes of both children have in common,

@@ -78,7 +78,7 @@ impl GpuPrepared<'_> {
         let limit = any_before.unwrap_or(T_MAX);
         let job = CastJob { rays: count, row_groups: groups.0, limit, pad: 0 };
         let job = self.device.uniform("the job", &[job])?;
-        let bindings = self.bind(&pipeline, Resource::from(&job), &[(3, rays), (8, hits)]);
+        let bindings = self.bind(&pipeline, Resource::from(&job), &[(3, rays.into()), (8, hits.into())]);
         Ok(Cast { pipeline, bindings, groups })
     }
 

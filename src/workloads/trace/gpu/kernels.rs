@@ -1,10 +1,10 @@
 //! Kernel variants: an entry file, a traversal, a set of constants, and the bindings that go with them.
 
 use crate::device::vulkan::{Binding, BindingKind, ReadBuffer, TEXTURE_WIDTH, Texel};
-use crate::device::{Constants, KernelFile, Source, assemble};
+use crate::device::{Constants, Feature, KernelFile, Source, assemble};
 use crate::error::{Error, Result};
 use crate::math;
-use crate::workloads::trace::backend::Config;
+use crate::workloads::trace::backend::{AMBIENT_RAYS, Config};
 use crate::workloads::trace::intersect::{TriangleTest, moller_trumbore};
 use crate::workloads::trace::method::{Pattern, ShadowRays};
 use crate::workloads::trace::{Axis, COMMON_OPTIONS, Method, OptionInfo, Parameter, Selection, algorithms, count};
@@ -14,6 +14,9 @@ pub use crate::workloads::kernel_files::FILES;
 
 const COUNT_ON: &str = "generated/count_on.wgsl";
 const COUNT_OFF: &str = "generated/count_off.wgsl";
+
+/// The binding of the driver's structure.
+pub(super) const DRIVER_TREE: u32 = 14;
 
 /// Every file that a kernel can include: those of `kernels/`, and generated ones.
 pub fn files() -> &'static [KernelFile] {
@@ -44,6 +47,15 @@ pub enum Entry {
         /// Which pass.
         pass: StagedPass,
     },
+    /// A pass of a frame of packets: `trace/subgroup/hits.wgsl`, `trace/subgroup/shade.wgsl`.
+    Packets {
+        /// Ray configuration.
+        config: Config,
+        /// With counters, or timed.
+        counting: bool,
+        /// Which pass.
+        pass: PacketPass,
+    },
     /// `trace/given.wgsl`.
     Trace {
         /// Any hit instead of the nearest one.
@@ -60,6 +72,15 @@ pub enum StagedPass {
     Bounce,
     /// Reflected rays for the last list.
     LastBounce,
+}
+
+/// A pass of a frame of packets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum PacketPass {
+    /// Nearest hits of primary rays.
+    Hits,
+    /// Surfaces, light and secondary rays.
+    Shade,
 }
 
 impl StagedPass {
@@ -83,6 +104,8 @@ pub struct Kernel {
     pub software_threads: u32,
     /// Scene and structure are in textures instead of storage buffers.
     pub textures: bool,
+    /// Corners of triangles are read in leaf order.
+    pub leaf_order: bool,
 }
 
 impl Entry {
@@ -93,8 +116,20 @@ impl Entry {
             Entry::Staged { config, counting, pass } => {
                 format!("{config:?} {pass:?}{}", if counting { " counting" } else { "" })
             }
+            Entry::Packets { config, counting, pass } => {
+                format!("{config:?} {pass:?}{}", if counting { " counting" } else { "" })
+            }
             Entry::Trace { any_hit } => format!("trace{}", if any_hit { " any hit" } else { "" }),
         }
+    }
+}
+
+/// What follows from primary hits.
+fn secondary(config: Config) -> &'static str {
+    match config {
+        Config::P | Config::PS | Config::PSR => "trace/secondary/mirrored.wgsl",
+        Config::AO => "trace/secondary/ambient.wgsl",
+        Config::DIFFUSE => "trace/secondary/diffuse.wgsl",
     }
 }
 
@@ -120,6 +155,8 @@ impl Kernel {
             Entry::Render { counting, .. } => ("trace/render.wgsl", counting),
             Entry::Staged { counting, pass: StagedPass::Primary, .. } => ("trace/staged/primary.wgsl", counting),
             Entry::Staged { counting, .. } => ("trace/staged/bounce.wgsl", counting),
+            Entry::Packets { counting, pass: PacketPass::Hits, .. } => ("trace/subgroup/hits.wgsl", counting),
+            Entry::Packets { counting, pass: PacketPass::Shade, .. } => ("trace/subgroup/shade.wgsl", counting),
             Entry::Trace { .. } => ("trace/given.wgsl", false),
         };
         let intersect = match self.method.intersect {
@@ -129,20 +166,31 @@ impl Kernel {
         let mut slots = vec![
             ("intersect", intersect),
             ("memory", if self.textures { "trace/textures.wgsl" } else { "trace/buffers.wgsl" }),
+            (
+                "triangles",
+                if self.leaf_order { "trace/triangles_leaf_order.wgsl" } else { "trace/triangles_indexed.wgsl" },
+            ),
             ("traversal", self.method.traversal.kernel),
             ("counting", if counting { COUNT_ON } else { COUNT_OFF }),
             ("store", if counting { "trace/store_counted.wgsl" } else { "trace/store_timed.wgsl" }),
         ];
-        if let Entry::Staged { counting, pass, .. } = self.entry {
-            let is_last = pass == StagedPass::LastBounce;
-            slots.extend([
-                ("append", if is_last { "trace/staged/end.wgsl" } else { "trace/staged/append.wgsl" }),
-                (
-                    "update",
-                    if counting { "trace/staged/update_counted.wgsl" } else { "trace/staged/update_timed.wgsl" },
-                ),
-            ]);
+        if let Entry::Render { config, .. } | Entry::Packets { config, .. } = self.entry {
+            slots.push(("secondary", secondary(config)));
         }
+        if let Entry::Staged { pass, .. } = self.entry {
+            let is_last = pass == StagedPass::LastBounce;
+            slots.push(("append", if is_last { "trace/staged/end.wgsl" } else { "trace/staged/append.wgsl" }));
+        }
+        let chosen = |counted, timed| if counting { counted } else { timed };
+        let packet_test = match self.method.intersect {
+            TriangleTest::Watertight => "trace/subgroup/watertight.wgsl",
+            TriangleTest::MollerTrumbore => "trace/subgroup/moller_trumbore.wgsl",
+        };
+        slots.extend([
+            ("update", chosen("trace/staged/update_counted.wgsl", "trace/staged/update_timed.wgsl")),
+            ("count_rows", chosen("trace/subgroup/count_on.wgsl", "trace/subgroup/count_off.wgsl")),
+            ("packet_test", packet_test),
+        ]);
         slots.extend((self.method.traversal.slots)(&self.method.parameters));
         assemble(files(), entry, &slots, self.constants())
     }
@@ -150,18 +198,24 @@ impl Kernel {
     /// The bindings of the entry file; those that a traversal does not use are bound as well.
     pub(super) fn layout(&self) -> Vec<Binding> {
         let input = |texel| ReadBuffer::kind(self.textures, texel);
-        let render = matches!(self.entry, Entry::Render { .. } | Entry::Staged { .. });
+        let render = !matches!(self.entry, Entry::Trace { .. });
         let mut layout = vec![
             Binding::new(0, if render { BindingKind::MovingUniform } else { BindingKind::Uniform }),
             Binding::new(1, input(Texel::Bytes16)),
             Binding::new(2, input(Texel::Bytes16)),
-            Binding::new(3, BindingKind::Read),
+            Binding::new(3, if render { input(Texel::Bytes16) } else { BindingKind::Read }),
             Binding::new(6, input(self.method.traversal.structure.node_texel)),
             Binding::new(7, BindingKind::Uniform),
             Binding::new(8, BindingKind::ReadWrite),
         ];
+        if self.method.traversal.needs.has(Feature::RayQuery) {
+            layout.push(Binding::new(DRIVER_TREE, BindingKind::AccelerationStructure));
+        }
         if render {
-            layout.extend([Binding::new(4, BindingKind::Read), Binding::new(5, BindingKind::Read)]);
+            layout.extend([4, 5].map(|number| Binding::new(number, input(Texel::Bytes16))));
+        }
+        if self.leaf_order {
+            layout.push(Binding::new(13, input(Texel::Bytes16)));
         }
         if let Entry::Staged { pass, .. } = self.entry {
             if pass != StagedPass::LastBounce {
@@ -197,7 +251,10 @@ impl Kernel {
             }
         }
         match self.entry {
-            Entry::Render { config, .. } | Entry::Staged { config, .. } => {
+            Entry::Render { config, .. } | Entry::Staged { config, .. } | Entry::Packets { config, .. } => {
+                if config == Config::AO {
+                    constants.unsigned("AMBIENT_RAYS", AMBIENT_RAYS);
+                }
                 constants.flag("SHADOWS", config.shadows());
                 constants.flag("TO_LIGHT", self.method.shadows == ShadowRays::ToLight);
                 constants.flag("FOUR_RAYS", self.method.pattern == Pattern::Four);
@@ -214,7 +271,9 @@ impl Kernel {
 pub fn methods() -> Vec<Method> {
     let mut methods = Vec::new();
     let mut add = |text: &str| {
-        let method = Selection::parse(text).expect("options and values of the table").method();
+        // An option that has no effect without others is refused
+        let Ok(selection) = Selection::parse(text) else { return };
+        let method = selection.method();
         if !methods.contains(&method) {
             methods.push(method);
         }
@@ -225,8 +284,19 @@ pub fn methods() -> Vec<Method> {
             option.examples().iter().for_each(|value| add(&format!("{}:{}={value}", algorithm.name, option.key)));
         }
     }
-    // What a traversal does otherwise in trees with clipped boxes
-    ["bvh:build=spatial", "bvh-stack:build=spatial", "bvh-stack:build=spatial,cull=off"].into_iter().for_each(&mut add);
+    // What a traversal does otherwise in trees with clipped boxes, and options that need others
+    let special = [
+        "bvh:build=spatial",
+        "bvh-stack:build=spatial",
+        "bvh-stack:build=spatial,cull=off",
+        "bvh-quantised:build=spatial",
+        "bvh8:build=spatial",
+        "bvh8:build=spatial,order=octant",
+        "bvh4:stack=short,entries=1",
+        "bvh8:stack=short,entries=16",
+        "cwbvh:build=spatial",
+    ];
+    special.into_iter().for_each(&mut add);
     let of_kernels = |option: &&OptionInfo| option.axis == Axis::Rays || option.key == "reflections";
     for option in COMMON_OPTIONS.iter().filter(of_kernels) {
         option.examples().iter().for_each(|value| add(&format!("bvh-stack:{}={value}", option.key)));
@@ -238,7 +308,10 @@ pub fn methods() -> Vec<Method> {
 fn entries(method: Method) -> Vec<Entry> {
     let mut entries: Vec<Entry> = [false, true].map(|any_hit| Entry::Trace { any_hit }).to_vec();
     for config in Config::ALL {
-        if method.is_staged(config.bounces()) {
+        if method.traversal.packets.is_some() {
+            let of = |pass| [false, true].map(|counting| Entry::Packets { config, counting, pass });
+            entries.extend([PacketPass::Hits, PacketPass::Shade].into_iter().flat_map(of));
+        } else if method.is_staged(config.bounces()) {
             let passes = StagedPass::all(config).into_iter();
             let of = |pass| [false, true].map(|counting| Entry::Staged { config, counting, pass });
             entries.extend(passes.flat_map(of));
@@ -264,7 +337,8 @@ pub fn defaults() -> Result<Vec<(String, Source)>> {
         }
         methods.push(method);
         for entry in entries(method) {
-            let kernel = Kernel { entry, method, stack_size: 32, software_threads: 0, textures: false };
+            let kernel =
+                Kernel { entry, method, stack_size: 32, software_threads: 0, textures: false, leaf_order: false };
             let source = kernel.assemble().map_err(Error::Device)?;
             defaults.push((format!("{} {}", algorithm.name, entry.label()), source));
         }
@@ -277,9 +351,19 @@ pub fn all() -> Vec<Kernel> {
     let mut all = Vec::new();
     for method in methods() {
         for entry in entries(method) {
-            for textures in [false, true] {
-                let kernel = |software_threads| Kernel { entry, method, stack_size: 32, software_threads, textures };
-                all.extend([0, 2].map(kernel));
+            for leaf_order in [false, true].into_iter().filter(|leaf_order| !leaf_order || method.traversal.leaf_order)
+            {
+                for textures in [false, true] {
+                    let kernel = |software_threads| Kernel {
+                        entry,
+                        method,
+                        stack_size: 32,
+                        software_threads,
+                        textures,
+                        leaf_order,
+                    };
+                    all.extend([0, 2].map(kernel));
+                }
             }
         }
     }

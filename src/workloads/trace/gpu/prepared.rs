@@ -1,6 +1,6 @@
 //! A scene and a structure on a device with one traversal: images, counting, given rays. Timing is in [`super::path`].
 
-use super::kernels::{Entry, Kernel, stack_size};
+use super::kernels::{DRIVER_TREE, Entry, Kernel, stack_size};
 use super::path::LastFrame;
 use super::rendering::{Part, entries_of, stages};
 use super::upload::Uploaded;
@@ -16,6 +16,7 @@ use crate::workloads::trace::cpu::cannot_walk;
 use crate::workloads::trace::{Method, Structure};
 use std::collections::HashMap;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// Rays per dispatch of [`Prepared::cast`].
 const TRACE_RAYS: usize = 1 << 20;
@@ -67,8 +68,9 @@ impl<'a> GpuPrepared<'a> {
 
     fn kernel_of(&self, entry: Entry) -> Kernel {
         let software_threads = self.device.info().software_threads();
-        let textures = self.uploaded.textures;
-        Kernel { entry, method: self.method, stack_size: self.stack_size, software_threads, textures }
+        let Uploaded { textures, .. } = self.uploaded;
+        let leaf_order = self.uploaded.corners.is_some();
+        Kernel { entry, method: self.method, stack_size: self.stack_size, software_threads, textures, leaf_order }
     }
 
     pub(super) fn compiled(&self, entry: Entry) -> Result<Arc<Pipeline>> {
@@ -84,7 +86,7 @@ impl<'a> GpuPrepared<'a> {
     }
 
     /// Binds scene and structure, `first` as number 0, and the kernel's other buffers.
-    pub(super) fn bind(&self, pipeline: &Pipeline, first: Resource, others: &[(u32, &Buffer)]) -> Bindings {
+    pub(super) fn bind(&self, pipeline: &Pipeline, first: Resource, others: &[(u32, Resource)]) -> Bindings {
         let scene = &self.uploaded;
         let mut resources = vec![
             (0, first),
@@ -93,7 +95,10 @@ impl<'a> GpuPrepared<'a> {
             (6, Resource::from(&scene.nodes)),
             (7, Resource::from(&scene.structure)),
         ];
-        resources.extend(others.iter().map(|&(number, buffer)| (number, Resource::from(buffer))));
+        resources.extend(scene.corners.as_ref().map(|corners| (13, Resource::from(corners))));
+        let driver_tree = scene.driver_tree.as_ref();
+        resources.extend(driver_tree.map(|tree| (DRIVER_TREE, Resource::AccelerationStructure(tree))));
+        resources.extend(others);
         self.device.bind(pipeline, &resources)
     }
 
@@ -101,7 +106,12 @@ impl<'a> GpuPrepared<'a> {
     pub(super) fn kernel_info(&self, entry: Entry) -> Result<KernelInfo> {
         let kernel = self.kernel_of(entry);
         let hash = kernel.assemble().map_err(Error::Device)?.hash();
-        let fetch = if kernel.textures { "textures" } else { "buffers" };
+        let fetch = match (kernel.textures, kernel.leaf_order) {
+            (false, false) => "buffers",
+            (false, true) => "buffers+leaf-order",
+            (true, false) => "textures",
+            (true, true) => "textures+leaf-order",
+        };
         let checked = self.device.options().checked || self.method.checked;
         Ok(KernelInfo { hash, fetch: fetch.to_owned(), checked })
     }
@@ -190,7 +200,10 @@ impl Prepared for GpuPrepared<'_> {
     }
 
     fn artifact_metrics(&self) -> Vec<Metric> {
-        vec![Metric::new("upload_ms", self.uploaded.structure_time.as_secs_f64() * 1e3)]
+        let ms = |time: Duration| time.as_secs_f64() * 1e3;
+        let driver_tree = self.uploaded.driver_tree.as_ref();
+        let of_driver = driver_tree.map(|tree| Metric::new("driver_build_ms", ms(tree.build_time())));
+        of_driver.into_iter().chain([Metric::new("upload_ms", ms(self.uploaded.structure_time))]).collect()
     }
 
     fn allocated(&self) -> (u64, u64) {

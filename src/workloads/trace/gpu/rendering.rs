@@ -1,16 +1,16 @@
 //! Frames of a ray configuration on a device: the kernels of their passes, the uniforms, and the lists between passes.
 
-use super::kernels::{Entry, StagedPass};
+use super::kernels::{Entry, PacketPass, StagedPass};
 use super::prepared::GpuPrepared;
 use super::shared::{FrameUniform, LENGTH, WaitingPath};
 use crate::camera::View;
-use crate::device::vulkan::{Bindings, Buffer, Dispatch, Groups, MAX_TIMESTAMPS, Pipeline, Resource};
+use crate::device::vulkan::{Bindings, Buffer, Dispatch, Groups, MAX_TIMESTAMPS, Pipeline, ReadBuffer, Resource};
 use crate::device::{Frame, Pass, Stage, Submissions};
 use crate::error::{Error, Result};
 use crate::scene::Light;
 use crate::workloads::trace::Method;
 use crate::workloads::trace::backend::*;
-use crate::workloads::trace::method::Reflections;
+use crate::workloads::trace::method::{Group, Reflections};
 use std::sync::Arc;
 
 /// The one stage of a fused frame: rays are generated, traced and shaded by one kernel.
@@ -19,17 +19,20 @@ const RENDER: [Stage; 1] = [Stage("render")];
 /// The stages of a staged frame: a pass for the primary rays, and one for each reflection.
 const STAGED: [Stage; 1 + MAX_BOUNCES as usize] = [Stage("primary"), Stage("reflection-1"), Stage("reflection-2")];
 
+/// The stages of a frame of packets.
+const PACKETS: [Stage; 2] = [Stage("hits"), Stage("shade")];
+
 /// A part of an image, and the index of the output pixel where it would begin if it had all columns.
 pub(super) type Part = (Tile, u32);
 
 /// Uniforms and lights of many frames, uploaded before any of them runs.
 struct FrameInputs {
     uniforms: Buffer,
-    lights: Buffer,
+    lights: ReadBuffer,
     /// Bytes between the uniforms of two parts.
     stride: u32,
-    /// Work-groups of each part, columns and rows.
-    groups: Vec<(u32, u32)>,
+    /// Columns and rows of each part.
+    extents: Vec<(u32, u32)>,
     parts_per_frame: usize,
 }
 
@@ -47,16 +50,27 @@ pub(super) struct Rendering<'p> {
     bindings: Vec<Bindings>,
     lists: Vec<List>,
     inputs: FrameInputs,
+    stages: &'static [Stage],
+    /// Pixels of a work-group of each pass.
+    shapes: Vec<Group>,
 }
 
 /// The stages of a frame.
 pub(super) fn stages(method: Method, config: Config) -> &'static [Stage] {
-    if method.is_staged(config.bounces()) { &STAGED[..=config.bounces() as usize] } else { &RENDER }
+    if method.traversal.packets.is_some() {
+        &PACKETS
+    } else if method.is_staged(config.bounces()) {
+        &STAGED[..=config.bounces() as usize]
+    } else {
+        &RENDER
+    }
 }
 
 /// The kernels of a frame's passes, in their order.
 pub(super) fn entries_of(method: Method, config: Config, counting: bool) -> Vec<Entry> {
-    if method.is_staged(config.bounces()) {
+    if method.traversal.packets.is_some() {
+        [PacketPass::Hits, PacketPass::Shade].map(|pass| Entry::Packets { config, counting, pass }).into()
+    } else if method.is_staged(config.bounces()) {
         StagedPass::all(config).into_iter().map(|pass| Entry::Staged { config, counting, pass }).collect()
     } else {
         vec![Entry::Render { config, counting }]
@@ -77,19 +91,25 @@ impl GpuPrepared<'_> {
         parts: &[Part],
         output: &Buffer,
     ) -> Result<Rendering<'p>> {
+        let Method { traversal, parameters, group, .. } = self.method;
+        let (stages, shapes, listed) = match traversal.packets {
+            Some(packets) => (&PACKETS[..], vec![packets(&parameters), group], 0),
+            None => (&STAGED[..], vec![group; pipelines.len()], pipelines.len() - 1),
+        };
         let inputs = self.frame_inputs(views, size, parts)?;
-        let lists = (1..pipelines.len()).map(|_| self.list(inputs.groups.len(), parts)).collect::<Result<Vec<_>>>()?;
+        self.check_groups(&inputs, &shapes)?;
+        let lists = (0..listed).map(|_| self.list(inputs.extents.len(), parts)).collect::<Result<Vec<_>>>()?;
         let bindings = pipelines.iter().enumerate().map(|(pass, pipeline)| {
-            let mut others = vec![(5, &inputs.lights), (8, output)];
+            let mut others: Vec<(u32, Resource)> = vec![(5, (&inputs.lights).into()), (8, output.into())];
             if let Some(List { lengths, paths }) = lists.get(pass) {
-                others.extend([(9, lengths), (10, paths)]);
+                others.extend([(9, lengths.into()), (10, paths.into())]);
             }
-            if let Some(List { lengths, paths }) = pass.checked_sub(1).map(|before| &lists[before]) {
-                others.extend([(11, lengths), (12, paths)]);
+            if let Some(List { lengths, paths }) = pass.checked_sub(1).and_then(|before| lists.get(before)) {
+                others.extend([(11, lengths.into()), (12, paths.into())]);
             }
             self.render_bindings(pipeline, &inputs.uniforms, &others)
         });
-        Ok(Rendering { pipelines, bindings: bindings.collect(), lists, inputs })
+        Ok(Rendering { pipelines, bindings: bindings.collect(), lists, inputs, stages, shapes })
     }
 
     /// A list for parts of an image, of which `uploaded` are uploaded for all views.
@@ -107,7 +127,7 @@ impl GpuPrepared<'_> {
         let stride = self.device.uniform_stride(size_of::<FrameUniform>());
         let mut uniforms = Vec::with_capacity(views.len() * parts.len() * stride as usize);
         let mut lights: Vec<Light> = Vec::new();
-        let mut groups = Vec::with_capacity(views.len() * parts.len());
+        let mut extents = Vec::with_capacity(views.len() * parts.len());
         for view in views {
             let grid = view.camera.pixel_grid(size.width, size.height);
             for &(tile, first_pixel) in parts {
@@ -128,35 +148,40 @@ impl GpuPrepared<'_> {
                     columns: tile.columns,
                     height: size.height,
                     shadow_reach: self.lengths.reach,
-                    part: groups.len() as u32,
-                    pad: 0,
+                    part: extents.len() as u32,
+                    ambient_reach: self.lengths.ambient,
                 };
                 uniforms.extend_from_slice(bytemuck::bytes_of(&uniform));
                 uniforms.resize(uniforms.len().next_multiple_of(stride as usize), 0);
-                groups.push((
-                    tile.columns.div_ceil(self.method.group.width),
-                    tile.rows.div_ceil(self.method.group.height),
-                ));
+                extents.push((tile.columns, tile.rows));
             }
             lights.extend_from_slice(&view.lights);
         }
-        let most = self.device.max_groups();
-        if let Some((x, y)) = groups.iter().find(|(x, y)| *x.max(y) > most) {
-            let problem = format!("{x} x {y} work-groups are more than this device's {most} per dimension");
-            return Err(Error::too_large("the image", problem, "use a smaller one"));
-        }
         Ok(FrameInputs {
             uniforms: self.device.uniform("the frames", &uniforms)?,
-            lights: self.device.storage("the lights", &lights)?,
+            lights: self.uploaded.input(self.device, "the lights", bytemuck::cast_slice(&lights))?,
             stride,
-            groups,
+            extents,
             parts_per_frame: parts.len(),
         })
     }
 
-    fn render_bindings(&self, pipeline: &Pipeline, uniforms: &Buffer, others: &[(u32, &Buffer)]) -> Bindings {
+    /// Refuses images with more work-groups than a dispatch has.
+    fn check_groups(&self, inputs: &FrameInputs, shapes: &[Group]) -> Result<()> {
+        let most = self.device.max_groups();
+        let groups = shapes.iter().flat_map(|shape| inputs.extents.iter().map(|extent| groups_of(*extent, *shape)));
+        match groups.into_iter().find(|(x, y)| *x.max(y) > most) {
+            Some((x, y)) => {
+                let problem = format!("{x} x {y} work-groups are more than this device's {most} per dimension");
+                Err(Error::too_large("the image", problem, "use a smaller one"))
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn render_bindings(&self, pipeline: &Pipeline, uniforms: &Buffer, others: &[(u32, Resource)]) -> Bindings {
         let uniform = Resource::Window(uniforms, size_of::<FrameUniform>() as u64);
-        let of_scene = [(3, &self.uploaded.materials), (4, &self.uploaded.triangle_materials)];
+        let of_scene = [(3, (&self.uploaded.materials).into()), (4, (&self.uploaded.triangle_materials).into())];
         self.bind(pipeline, uniform, &[&of_scene, others].concat())
     }
 
@@ -184,6 +209,11 @@ impl GpuPrepared<'_> {
     }
 }
 
+/// Work-groups of this shape that cover so many columns and rows, in columns and rows.
+fn groups_of((columns, rows): (u32, u32), shape: Group) -> (u32, u32) {
+    (columns.div_ceil(shape.width), rows.div_ceil(shape.height))
+}
+
 impl Rendering<'_> {
     /// The frames that were uploaded, each with the passes of all its parts.
     pub fn frames(&self) -> Vec<Frame<Dispatch<'_>>> {
@@ -203,18 +233,21 @@ impl Rendering<'_> {
         // A watchdog asks for parts, which it is to see alone; without parts the host is not to be seen between passes
         let is_whole = self.inputs.parts_per_frame == 1 && self.pipelines.len() > 1;
         let submissions = if is_whole { Submissions::PerFrame } else { Submissions::PerPass };
-        (0u32..).zip(&self.inputs.groups).map(move |(part, &(x, y))| {
+        (0u32..).zip(&self.inputs.extents).map(move |(part, &extent)| {
             let passes = self.pipelines.iter().enumerate().map(|(pass, pipeline)| {
-                let groups = match pass.checked_sub(1) {
-                    None => Groups::Fixed(x, y, 1),
-                    Some(before) => Groups::Indirect {
-                        buffer: &self.lists[before].lengths,
+                let groups = match pass.checked_sub(1).and_then(|before| self.lists.get(before)) {
+                    None => {
+                        let (x, y) = groups_of(extent, self.shapes[pass]);
+                        Groups::Fixed(x, y, 1)
+                    }
+                    Some(list) => Groups::Indirect {
+                        buffer: &list.lengths,
                         offset: u64::from(part) * size_of_val(&LENGTH) as u64,
                     },
                 };
                 let offset = Some(part * self.inputs.stride);
                 Pass {
-                    stage: if by_stage { STAGED[pass] } else { RENDER[0] },
+                    stage: if by_stage { self.stages[pass] } else { RENDER[0] },
                     work: Dispatch { pipeline, bindings: &self.bindings[pass], offset, groups },
                 }
             });

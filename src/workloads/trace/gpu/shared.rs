@@ -26,7 +26,7 @@ pub struct FrameUniform {
     pub height: u32,
     pub shadow_reach: f32,
     pub part: u32,
-    pub pad: u32,
+    pub ambient_reach: f32,
 }
 
 /// `Waiting` of `kernels/trace/staged/list.wgsl`: a path that goes on in a mirror.
@@ -45,6 +45,20 @@ pub struct WaitingPath {
 /// `Length` of `kernels/trace/staged/list.wgsl` for an empty list: no work-groups, one in the other dimensions, no
 /// path.
 pub const LENGTH: [u32; 4] = [0, 1, 1, 0];
+
+/// Three texels of `kernels/trace/triangles_leaf_order.wgsl`: the corners of a triangle reference.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+#[allow(missing_docs)]
+pub struct LeafTriangle {
+    pub a: Vec3,
+    /// Index in the scene.
+    pub triangle: u32,
+    pub b: Vec3,
+    pub material: u32,
+    pub c: Vec3,
+    pub pad: u32,
+}
 
 /// `Job` of `kernels/trace/given.wgsl`.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]

@@ -4,8 +4,8 @@
 mod rows;
 mod variant;
 
-pub use super::count::CounterSums;
-pub use rows::{counter_metrics, structure_metrics};
+pub use super::count::{ByRayType, CounterSums, RAY_TYPES};
+pub use rows::{by_ray_type, counter_metrics, structure_metrics};
 pub use variant::{OPTION_AXES, split_variant, variant_of};
 
 use super::Properties;
@@ -22,9 +22,6 @@ use serde::{Deserialize, Serialize};
 
 /// Name of the workload in keys.
 pub const WORKLOAD: &str = "sweep";
-
-/// Names of the ray types, in the order of counters.
-pub const RAY_TYPES: [&str; 3] = ["primary", "shadow", "reflected"];
 
 /// A scene.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -74,6 +71,9 @@ pub struct StructureRecord {
     pub build_threads: usize,
     /// Its sizes.
     pub memory: Memory,
+    /// Milliseconds of its upload to the device; absent where it was not measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub upload_ms: Option<f64>,
     /// How it was built where not as its options say; absent otherwise.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub note: String,
@@ -182,7 +182,9 @@ pub struct ConfigurationRecord {
     #[serde(default)]
     pub dispatches: Option<u32>,
     /// By ray type (primary, shadow, reflected), over all frames.
-    pub counters: Option<[CounterSums; 3]>,
+    #[serde(default, deserialize_with = "rows::first_ray_types")]
+    #[schemars(with = "Option<[CounterSums; 3]>")]
+    pub counters: Option<ByRayType<CounterSums>>,
     /// Sizes.
     pub memory: Memory,
     /// Build time in milliseconds.

@@ -3,6 +3,7 @@
 use super::variant::{split_variant, variant_of};
 use super::*;
 use crate::record::row::{Artifact, Check, Input, Metric, Value, metric};
+use serde::Deserializer;
 
 fn integer(metrics: &[Metric], name: &str) -> u64 {
     metric(metrics, None, name).and_then(Value::integer).unwrap_or_default()
@@ -105,19 +106,22 @@ impl StructureRecord {
             build_ms: number(&artifact.metrics, "build_ms"),
             build_threads: integer(&artifact.metrics, "build_threads") as usize,
             memory: memory_of(&artifact.metrics),
+            upload_ms: metric(&artifact.metrics, None, "upload_ms").and_then(Value::number),
             note: artifact.note.clone(),
         })
     }
 
     /// For the general schema.
     pub(crate) fn to_artifact(&self) -> Artifact {
-        let StructureRecord { scene, structure, variant, properties, build_ms, build_threads, memory, note } = self;
+        let StructureRecord { scene, structure, variant, properties, build_ms, build_threads, memory, upload_ms, note } =
+            self;
         let mut key = Key { workload: WORKLOAD.into(), ..Key::default() };
         key.axes.insert("scene".into(), scene.name.clone());
         key.axes.insert("structure".into(), structure.clone());
         key.axes.extend(split_variant(structure, variant));
         key.inputs.insert("scene".into(), scene.hash.clone());
-        let metrics = structure_metrics(properties, *memory, *build_ms, *build_threads);
+        let mut metrics = structure_metrics(properties, *memory, *build_ms, *build_threads);
+        metrics.extend(upload_ms.map(|ms| Metric::new("upload_ms", ms)));
         Artifact { key, metrics, note: note.clone() }
     }
 }
@@ -210,12 +214,30 @@ impl ConfigurationRecord {
     }
 }
 
-/// Counters of all ray types as metrics.
-pub fn counter_metrics(counters: &[CounterSums; 3]) -> Vec<Metric> {
+/// Counters as metrics: those of primary, shadow and reflected rays always, those of other types where there are such
+/// rays.
+pub fn counter_metrics(counters: &ByRayType<CounterSums>) -> Vec<Metric> {
     let of_type = |(ray, sums): (&&str, &CounterSums)| {
         sums.values().into_iter().map(|(name, sum)| Metric::of(ray, name, sum)).collect::<Vec<_>>()
     };
-    RAY_TYPES.iter().zip(counters).flat_map(of_type).collect()
+    let is_shown = |(index, (_, sums)): &(usize, (&&str, &CounterSums))| *index < SCHEMA_1 || sums.rays > 0;
+    RAY_TYPES.iter().zip(counters).enumerate().filter(is_shown).map(|(_, pair)| pair).flat_map(of_type).collect()
+}
+
+/// Ray types of schema 1: primary, shadow, reflected.
+const SCHEMA_1: usize = 3;
+
+/// Reads the counters of schema 1; those of other ray types are zero.
+pub(super) fn first_ray_types<'d, D: Deserializer<'d>>(from: D) -> Result<Option<ByRayType<CounterSums>>, D::Error> {
+    let read: Option<[CounterSums; SCHEMA_1]> = Option::deserialize(from)?;
+    Ok(read.map(by_ray_type))
+}
+
+/// Counters of the first ray types; those of the others are zero.
+pub fn by_ray_type(first: [CounterSums; SCHEMA_1]) -> ByRayType<CounterSums> {
+    let mut all = ByRayType::default();
+    all[..SCHEMA_1].copy_from_slice(&first);
+    all
 }
 
 impl Verification {

@@ -8,6 +8,7 @@ use rtbench::sources::claims::{Basis, Finding, Form, write};
 use rtbench::sources::rt2::SOURCE;
 use rtbench::sources::rt2::structures::{BIH, BVH, CULLED, MIN_MAX, ROPES, SORT, SPATIAL, STACK, SWEEP, Structure};
 use rtbench::workloads::trace::rays::Config;
+use rtbench::workloads::trace::record::by_ray_type;
 
 fn findings(builder: Builder) -> Vec<Finding> {
     (SOURCE.read)(&[builder.run]).claims(&Default::default())
@@ -70,7 +71,7 @@ fn spatial(b: &mut Builder, splits: u32, overlap: f64) {
 fn skipping(b: &mut Builder, skips: u64) {
     let mut sums = steps(1000);
     sums.skips = skips;
-    b.shot("room", &BIH, 1.0).counters = Some([sums, steps(0), steps(0)]);
+    b.shot("room", &BIH, 1.0).counters = Some(by_ray_type([sums, steps(0), steps(0)]));
 }
 
 /// The kd-tree's time in the room, where a BVH and everything on the scan takes 10 ms.

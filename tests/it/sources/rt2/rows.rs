@@ -108,7 +108,7 @@ fn notes_say_what_is_left_out() {
     let others = notes(&|b| {
         b.row(scene("alien"), &ROPES.selection(), Config::PS, SIZE, 1.0);
     });
-    assert!(others.len() == 1 && others[0].contains("shows 1 row with shadow or reflected rays"), "{others:?}");
+    assert!(others.len() == 1 && others[0].contains("shows 1 row with rays other than primary ones"), "{others:?}");
     let unlike = notes(&|b| b.shot("alien", &STACK, 1.0).frames = 9);
     assert!(unlike.iter().any(|note| note.contains("9 frames") && note.contains("left out")), "{unlike:?}");
 }

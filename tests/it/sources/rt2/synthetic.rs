@@ -5,7 +5,7 @@ use rtbench::sources::rt2::structures::{
 };
 use rtbench::sources::runs::RecordedRun;
 use rtbench::workloads::trace::rays::Config;
-use rtbench::workloads::trace::record::{ConfigurationRecord, CounterSums, SceneRecord, StructureRecord};
+use rtbench::workloads::trace::record::{ConfigurationRecord, CounterSums, SceneRecord, StructureRecord, by_ray_type};
 
 pub use crate::sources::synthetic::Builder;
 
@@ -42,7 +42,7 @@ impl Builder {
 
     /// The same, with so many steps per primary ray.
     pub fn walk(&mut self, name: &str, structure: &Structure, ms: f64, per_ray: u64) {
-        self.shot(name, structure, ms).counters = Some([steps(per_ray), steps(0), steps(0)]);
+        self.shot(name, structure, ms).counters = Some(by_ray_type([steps(per_ray), steps(0), steps(0)]));
     }
 
     /// A tree with a build time in milliseconds, bytes of the model and leaves.

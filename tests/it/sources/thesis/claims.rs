@@ -6,6 +6,7 @@ use rtbench::sources::claims::{Basis, Finding, Form, summary, write};
 use rtbench::sources::thesis::claims::{UNIFORM_CROWDING, crowding, judge};
 use rtbench::sources::thesis::{measured, published};
 use rtbench::workloads::trace::backend::{Config, DeviceType};
+use rtbench::workloads::trace::record::by_ray_type;
 
 fn findings(builder: Builder) -> Vec<Finding> {
     judge(&measured::data(&[builder.run]), &published::data(), 0)
@@ -258,8 +259,9 @@ fn on_a_software_device_counts_decide_where_they_can() {
     let software = |restart: u64| {
         let mut b = Builder::new().device("llvmpipe", DeviceType::SoftwareRasteriser);
         // By time the claim would fail.
-        b.frame("museum", "kdtree", Config::P, 256, 10.0).counters = Some([sums(20, 10); 3]);
-        b.frame("museum", "kdtree:search=restart", Config::P, 256, 5.0).counters = Some([sums(restart, 10); 3]);
+        b.frame("museum", "kdtree", Config::P, 256, 10.0).counters = Some(by_ray_type([sums(20, 10); 3]));
+        b.frame("museum", "kdtree:search=restart", Config::P, 256, 5.0).counters =
+            Some(by_ray_type([sums(restart, 10); 3]));
         b.trio("robots", Config::PS, 256, [3.0, 2.0, 1.0]);
         finding(b, "7")
     };

@@ -10,7 +10,7 @@ use rtbench::workloads::trace::CpuBackend;
 use rtbench::workloads::trace::Selection;
 use rtbench::workloads::trace::backend::{Backend, Config, Size};
 use rtbench::workloads::trace::counting;
-use rtbench::workloads::trace::record::CounterSums;
+use rtbench::workloads::trace::record::{ByRayType, CounterSums};
 use std::path::Path;
 
 /// Frames of the path, evenly spread, and the side of the image. Counts of single rays hardly depend on either: with
@@ -25,7 +25,7 @@ fn counted(
     structure: &str,
     config: Config,
     choose: impl FnOnce(&CameraPath, &Scene) -> Vec<View>,
-) -> Option<[CounterSums; 3]> {
+) -> Option<ByRayType<CounterSums>> {
     let Some(folder) = std::env::var_os("RTBENCH_SCENES").filter(|folder| !folder.is_empty()) else {
         eprintln!("NOT RUN: set RTBENCH_SCENES to the folder that holds {scene}");
         return None;

@@ -9,6 +9,7 @@ use rtbench::sources::thesis::claims::judge;
 use rtbench::sources::thesis::data::Frame;
 use rtbench::sources::thesis::{measured, published};
 use rtbench::workloads::trace::backend::{Config, DeviceType};
+use rtbench::workloads::trace::record::by_ray_type;
 
 #[test]
 fn the_thesis_s_own_exceptions_are_named_and_nothing_else_is_excused() {
@@ -169,11 +170,12 @@ fn what_failed_is_named_and_nothing_else() {
 fn counts_decide_for_the_device_that_counted() {
     let mut a = Builder::new().device("llvmpipe", DeviceType::SoftwareRasteriser);
     // Under PSR only: the primary rays are counted there, too.
-    a.frame("museum", "kdtree", Config::PSR, 256, 10.0).counters = Some([sums(20, 10), sums(1, 1), sums(1, 1)]);
+    a.frame("museum", "kdtree", Config::PSR, 256, 10.0).counters =
+        Some(by_ray_type([sums(20, 10), sums(1, 1), sums(1, 1)]));
     a.frame("museum", "kdtree:search=restart", Config::PSR, 256, 5.0).counters =
-        Some([sums(80, 10), sums(1, 1), sums(1, 1)]);
+        Some(by_ray_type([sums(80, 10), sums(1, 1), sums(1, 1)]));
     let mut b = Builder::new().device("another", DeviceType::SoftwareRasteriser);
-    b.frame("museum", "kdtree", Config::PSR, 256, 10.0).counters = Some([sums(70, 10); 3]);
+    b.frame("museum", "kdtree", Config::PSR, 256, 10.0).counters = Some(by_ray_type([sums(70, 10); 3]));
     let all = judge(&measured::data(&[a.run, b.run]), &published::data(), 0);
     let of: Vec<&Finding> = all.iter().filter(|f| f.claim == "7").collect();
     assert_eq!(of.iter().map(|f| f.verdict).collect::<Vec<_>>(), [Verdict::Holds, Verdict::NotMeasured]);

@@ -11,6 +11,7 @@ use rtbench::sources::thesis::variant::Variant;
 use rtbench::sources::thesis::{measured, published};
 use rtbench::workloads::trace::TRACE;
 use rtbench::workloads::trace::backend::{Config, DeviceType};
+use rtbench::workloads::trace::record::by_ray_type;
 
 #[test]
 fn a_scene_is_the_thesis_s_by_name_and_counts() {
@@ -174,7 +175,7 @@ fn devices_keep_their_counts() {
     let run = |name: &str, steps: u64| {
         let mut b = Builder::new().device(name, DeviceType::DiscreteGpu);
         let record = b.frame("museum", "grid", Config::P, 64, 1.0);
-        record.counters = Some([sums(steps, 1); 3]);
+        record.counters = Some(by_ray_type([sums(steps, 1); 3]));
         record.frames = steps as usize;
         b.run
     };

@@ -10,6 +10,7 @@ use rtbench::sources::thesis::tables::{IDS, build};
 use rtbench::sources::thesis::{measured, published};
 use rtbench::sources::{ALL, Options, Rows, select_tables};
 use rtbench::workloads::trace::backend::{Config, DeviceType};
+use rtbench::workloads::trace::record::by_ray_type;
 
 const FORMATS: [Format; 4] = [Format::Text, Format::Markdown, Format::Csv, Format::Latex];
 
@@ -251,7 +252,7 @@ fn steps_follow_the_convention() {
     let mut b = Builder::new();
     b.frame("bunny", "kdtree", Config::P, 512, 1.0);
     // A smaller image's counts do not replace a larger one's.
-    b.frame("bunny", "kdtree", Config::P, 256, 1.0).counters = Some([super::synthetic::sums(99, 99); 3]);
+    b.frame("bunny", "kdtree", Config::P, 256, 1.0).counters = Some(by_ray_type([super::synthetic::sums(99, 99); 3]));
     b.frame("bunny", "grid", Config::P, 512, 1.0);
     let data = measured::data(&[b.run]);
     // Of ten steps six are inner nodes and four leaves; five pops.

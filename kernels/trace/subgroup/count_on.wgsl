@@ -1,0 +1,47 @@
+// Counters of a packet's rays: what its rows make them test. Every ray of the packet counts what is taken from the
+// stack.
+
+var<private> row_counters: array<Counters, RAYS>;
+
+fn begin_rows() {
+    for (var k = 0u; k < RAYS; k += 1u) {
+        row_counters[k].rays = 1u;
+    }
+}
+
+fn add_rows_inner(rows: u32) {
+    for (var k = 0u; k < RAYS; k += 1u) {
+        row_counters[k].inner += (rows >> k) & 1u;
+    }
+}
+
+fn add_rows_leaves(rows: u32) {
+    for (var k = 0u; k < RAYS; k += 1u) {
+        row_counters[k].leaves += (rows >> k) & 1u;
+    }
+}
+
+fn add_rows_pops(rows: u32) {
+    for (var k = 0u; k < RAYS; k += 1u) {
+        row_counters[k].pops += (rows >> k) & 1u;
+    }
+}
+
+fn add_rows_boxes(rows: u32, n: u32) {
+    for (var k = 0u; k < RAYS; k += 1u) {
+        row_counters[k].boxes += ((rows >> k) & 1u) * n;
+    }
+}
+
+fn add_rows_tests(rows: u32, n: u32) {
+    for (var k = 0u; k < RAYS; k += 1u) {
+        row_counters[k].tests += ((rows >> k) & 1u) * n;
+    }
+}
+
+fn keep_hit(index: u32, triangle_ref: u32, k: u32) {
+    pixels[index].triangle = triangle_ref;
+    pixels[index].counters[PRIMARY] = row_counters[k];
+    pixels[index].counters[SHADOW] = Counters();
+    pixels[index].counters[REFLECTED] = Counters();
+}
