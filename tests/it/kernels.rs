@@ -260,3 +260,19 @@ fn nodes_of_wide_trees_are_packed() {
     assert_eq!(links, [12, 15, 16]);
     assert_eq!([offset_of!(CwNode, first_ref), offset_of!(CwNode, meta), offset_of!(CwNode, planes)], [20, 24, 32]);
 }
+
+/// Builders' passes share one uniform.
+#[test]
+fn jobs_of_builders_agree() {
+    let kernels = rtbench::workloads::trace::build::gpu::kernels().unwrap();
+    for (label, source) in &kernels {
+        let module = &check(source).unwrap_or_else(|problem| panic!("{label}: {problem}"));
+        same_layout!(
+            module,
+            "Job",
+            rtbench::workloads::trace::build::gpu::Job,
+            [count, stride, workers, chunk, shift, level, max_leaf, first, radius, forced, leaves, unit, lo, scale]
+        );
+    }
+    assert!(kernels.len() > 10);
+}

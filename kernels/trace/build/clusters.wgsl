@@ -4,8 +4,8 @@
 //!include trace/build/ordered.wgsl
 //!include trace/build/read_box.wgsl
 
-@group(0) @binding(2) var<storage, read> order: array<u32>;
-@group(0) @binding(3) var<storage, read_write> clusters: array<vec4<u32>>; // see trace/build/cluster.wgsl
+@group(0) @binding(3) var<storage, read> order: array<u32>;
+@group(0) @binding(4) var<storage, read_write> clusters: array<vec4<u32>>; // see trace/build/cluster.wgsl
 
 @compute @workgroup_size(GROUP_SIZE)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {

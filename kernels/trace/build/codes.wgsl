@@ -5,7 +5,6 @@
 //!include trace/build/ordered.wgsl
 //!include trace/build/read_box.wgsl
 
-@group(0) @binding(2) var<storage, read> cells: array<f32, 6>; // lower corner, cells per unit
 @group(0) @binding(3) var<storage, read_write> keys: array<u32>;
 
 // Two zeros behind each of the lower ten bits.
@@ -19,10 +18,8 @@ fn spread(cell: vec3<u32>) -> vec3<u32> {
 
 @compute @workgroup_size(GROUP_SIZE)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let lo = vec3<f32>(cells[0], cells[1], cells[2]);
-    let scale = vec3<f32>(cells[3], cells[4], cells[5]);
     for (var i = id.x; i < job.count; i += job.stride) {
-        let cell = (half_centroid(read_box(i)) - lo) * scale;
+        let cell = (half_centroid(read_box(i)) - job.lo) * job.scale;
         let bits = spread(vec3<u32>(min(cell, vec3<f32>(CELLS - 1.0))));
         keys[i] = bits.x | (bits.y << 1u) | (bits.z << 2u);
     }

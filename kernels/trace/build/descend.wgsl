@@ -5,14 +5,14 @@
 //!include trace/build/ordered.wgsl
 //!include trace/build/read_box.wgsl
 
-@group(0) @binding(2) var<storage, read> order: array<u32>;
-@group(0) @binding(3) var<storage, read> inner: array<vec4<u32>>; // as in trace/build/merge.wgsl
-@group(0) @binding(4) var<storage, read> triangles: array<u32>;   // of each inner node
-@group(0) @binding(5) var<storage, read> ranks: array<u32>;       // of inner nodes that are kept, the last one first
-@group(0) @binding(6) var<storage, read_write> places: array<vec2<u32>>; // of inner nodes: first triangle, and depth
-@group(0) @binding(7) var<storage, read_write> sorted: array<u32>;       // triangles, leaf by leaf
-@group(0) @binding(8) var<storage, read_write> nodes: array<vec4<u32>>;  // as src/workloads/trace/bvh/layout.rs says
-@group(0) @binding(9) var<storage, read_write> deepest: atomic<u32>;     // levels of inner nodes
+@group(0) @binding(3) var<storage, read> order: array<u32>;
+@group(0) @binding(4) var<storage, read> inner: array<vec4<u32>>; // as in trace/build/merge.wgsl
+@group(0) @binding(5) var<storage, read> triangles: array<u32>;   // of each inner node
+@group(0) @binding(6) var<storage, read> ranks: array<u32>;       // of inner nodes that are kept, the last one first
+@group(0) @binding(7) var<storage, read_write> places: array<vec2<u32>>; // of inner nodes: first triangle, and depth
+@group(0) @binding(8) var<storage, read_write> sorted: array<u32>;       // triangles, leaf by leaf
+@group(0) @binding(9) var<storage, read_write> nodes: array<vec4<u32>>;  // as src/workloads/trace/bvh/layout.rs says
+@group(0) @binding(10) var<storage, read_write> deepest: atomic<u32>;     // levels of inner nodes
 
 fn pair_of(own: u32) -> u32 {
     return 2u + 2u * ranks[job.leaves - 2u - own];

@@ -13,6 +13,10 @@ struct Job {
     forced: u32,   // 1 where all clusters merge in pairs
     leaves: u32,   // triangles of the tree
     unit: f32,     // about 1 over the scene's extent
+    lo: vec3<f32>, // the corner where cells of Morton codes begin
+    pad0: f32,
+    scale: vec3<f32>, // cells per unit
+    pad1: f32,
 }
 
 @group(0) @binding(0) var<uniform> job: Job;

@@ -2,5 +2,5 @@
 @group(0) @binding(3) var<storage, read_write> nodes: array<vec4<u32>>; // as src/workloads/trace/bvh/layout.rs says
 @group(0) @binding(4) var<storage, read_write> slots: array<u32>;       // the node that is inner node i
 @group(0) @binding(5) var<storage, read_write> waiting: array<atomic<u32>>; // children of inner node i without a box
-@group(0) @binding(6) var<storage, read_write> lengths: array<atomic<u32>>; // of the list of each level, and the depth
+@group(0) @binding(6) var<storage, read_write> lengths: array<atomic<u32>>; // of the list of each level, depth, leaves
 @group(0) @binding(7) var<storage, read_write> next: array<u32>;

@@ -1,21 +1,13 @@
-// The range of every inner node that is kept, the leaves below it, and which node each inner child is. Twins:
+// The range of every inner node that is kept, which children are leaves, and which node each inner child is. Twins:
 // src/workloads/trace/build/{tree,lbvh}.rs.
 
 //!include trace/build/job.wgsl
 //!include trace/build/radix_tree.wgsl
-//!include trace/build/ordered.wgsl
 //!include trace/build/lists.wgsl
 
-@group(0) @binding(2) var<storage, read> boxes: array<u32>; // six words a triangle
-@group(0) @binding(8) var<storage, read> order: array<u32>;
-@group(0) @binding(9) var<storage, read> ranks: array<u32>; // nodes that are kept before each
-@group(0) @binding(10) var<storage, read> kept: array<u32>;
-
-fn read_box(triangle: u32) -> Box {
-    let i = triangle * 6u;
-    let lo = vec3<u32>(boxes[i], boxes[i + 1u], boxes[i + 2u]);
-    return Box(lo, vec3<u32>(boxes[i + 3u], boxes[i + 4u], boxes[i + 5u]));
-}
+@group(0) @binding(2) var<storage, read_write> leaves: array<u32>; // nodes that are leaves, in any order
+@group(0) @binding(8) var<storage, read> ranks: array<u32>;        // nodes that are kept before each
+@group(0) @binding(9) var<storage, read> kept: array<u32>;
 
 fn child(slot: u32, node: u32, first: u32, last: u32) -> u32 {
     let count = last - first + 1u;
@@ -23,12 +15,9 @@ fn child(slot: u32, node: u32, first: u32, last: u32) -> u32 {
         slots[ranks[node]] = slot;
         return 1u;
     }
-    var box = NOTHING;
-    for (var i = first; i <= last; i += 1u) {
-        box = around(box, read_box(order[i]));
-    }
-    nodes[slot * 2u] = vec4<u32>(floats(box.lo), first);
-    nodes[slot * 2u + 1u] = vec4<u32>(floats(box.hi), count);
+    nodes[slot * 2u].w = first;
+    nodes[slot * 2u + 1u].w = count;
+    leaves[atomicAdd(&lengths[LEAVES], 1u)] = slot;
     return 0u;
 }
 

@@ -5,14 +5,11 @@
 
 // Bits that two keys have in common, or of equal keys their places; -1 outside of all keys.
 fn common_bits(key: u32, i: i32, j: i32) -> i32 {
-    if (j < 0 || j >= i32(job.leaves)) {
-        return -1;
-    }
-    let other = keys[j];
-    if (key == other) {
-        return 32 + i32(countLeadingZeros(u32(i ^ j)));
-    }
-    return i32(countLeadingZeros(key ^ other));
+    // Without branches, which cost a software driver more than what they leave out
+    let is_there = u32(j) < job.leaves;
+    let different = key ^ keys[select(0u, u32(j), is_there)];
+    let bits = select(countLeadingZeros(different), 32u + countLeadingZeros(u32(i ^ j)), different == 0u);
+    return select(-1, i32(bits), is_there);
 }
 
 struct Side {

@@ -29,8 +29,8 @@ pub fn build_repeatedly(
     repeatedly(times, || build(selection, scene, threads, interrupted))
 }
 
-/// The same on a device, where the builder can; the stages are those of the build with the median time. `None` where
-/// it builds on the CPU alone.
+/// The same on a device, where the builder can; the stages are those of the build with the median time. A build before
+/// those that count lets the driver compile its kernels. `None` where it builds on the CPU alone.
 ///
 /// # Errors
 /// The builder's, the device's, and [`Error::Interrupted`].
@@ -47,12 +47,11 @@ pub fn build_repeatedly_on(
         }
         selection.build_on(scene, device, interrupted)
     };
-    let Some(first) = build()? else { return Ok(None) };
-    let mut first = Some(first);
-    let next = || {
-        let built = first.take().map_or_else(build, |built| Ok(Some(built)))?;
-        built.ok_or_else(|| Error::Device(format!("{} was built on the device only once", selection.name())))
-    };
+    if build()?.is_none() {
+        return Ok(None);
+    }
+    let name = selection.name();
+    let next = || build()?.ok_or_else(|| Error::Device(format!("{name} was built on the device only once")));
     repeatedly(times, next).map(Some)
 }
 

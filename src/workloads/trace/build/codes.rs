@@ -1,8 +1,9 @@
-//! Triangles along the Morton curve. Twin of `kernels/trace/build/{boxes,cells,codes,count,scatter}.wgsl`.
+//! Triangles along the Morton curve. Twin of `kernels/trace/build/{codes,count,scatter}.wgsl`.
 //!
-//! G. M. Morton: A Computer Oriented Geodetic Data Base, 1966. Codes have ten bits an axis; each axis is divided by its
-//! own extent.
+//! G. M. Morton: A Computer Oriented Geodetic Data Base, 1966. Codes have ten bits an axis; each axis of the box
+//! around all triangles is divided by its own extent.
 
+use crate::math::Aabb;
 use crate::workloads::trace::common::prims::{CHUNK, Prim};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -17,10 +18,10 @@ pub const SMALLEST_EXTENT: f32 = f32::from_bits((127 - 100) << 23);
 /// The cells of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cells {
-    /// Half the smallest centroid.
-    lo: Vec3,
-    /// Cells per unit.
-    scale: Vec3,
+    /// Half the corner where they begin.
+    pub lo: Vec3,
+    /// Cells per half unit.
+    pub scale: Vec3,
 }
 
 /// Half the centroid of a triangle's box: so it is finite in every scene.
@@ -29,12 +30,9 @@ fn half_centroid(prim: &Prim) -> Vec3 {
 }
 
 impl Cells {
-    /// Cells that hold all centroids.
-    pub fn of(prims: &[Prim]) -> Cells {
-        let none = || (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        let both = |a: (Vec3, Vec3), b: (Vec3, Vec3)| (a.0.min(b.0), a.1.max(b.1));
-        let centroids = prims.par_iter().with_min_len(CHUNK).map(half_centroid);
-        let (lo, hi) = centroids.fold(none, |all, c| both(all, (c, c))).reduce(none, both);
+    /// Cells of the box around all triangles.
+    pub fn of(bounds: &Aabb) -> Cells {
+        let (lo, hi) = (bounds.min * 0.5, bounds.max * 0.5);
         let extent = hi - lo;
         let scale = Vec3::select(extent.cmpgt(Vec3::splat(SMALLEST_EXTENT)), CELLS / extent, Vec3::ZERO);
         Cells { lo, scale }
@@ -66,9 +64,9 @@ pub struct Sorted {
 }
 
 impl Sorted {
-    /// Sorts boxes.
-    pub fn of(prims: &[Prim]) -> Sorted {
-        let cells = Cells::of(prims);
+    /// Sorts boxes; `bounds` is around all.
+    pub fn of(prims: &[Prim], bounds: &Aabb) -> Sorted {
+        let cells = Cells::of(bounds);
         let pair = |(i, prim): (usize, &Prim)| u64::from(cells.code(prim)) << 32 | i as u64;
         let mut pairs: Vec<u64> = prims.par_iter().with_min_len(CHUNK).enumerate().map(pair).collect();
         pairs.par_sort_unstable();

@@ -1,5 +1,5 @@
 //! Linear BVH: the binary radix tree over Morton codes, whose small subtrees are leaves. Twin of
-//! `kernels/trace/build/{list,nodes,refit,top}.wgsl`.
+//! `kernels/trace/build/{list,nodes,leaves,refit,top}.wgsl`.
 //!
 //! T. Karras: Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees, 2012. Ours: boxes go up level
 //! by level instead of by atomic counters alone, since a pass of a device is sure to see only what earlier passes wrote;
@@ -24,7 +24,7 @@ pub fn build(scene: &Scene, max_leaf: u32) -> Result<Bvh> {
         Input::Leaf(bvh) => return Ok(bvh),
         Input::Prims(prims, bounds) => (prims, bounds),
     };
-    let Sorted { keys, order } = Sorted::of(&prims);
+    let Sorted { keys, order } = Sorted::of(&prims, &bounds);
     let inner = (0..keys.len() - 1).into_par_iter().with_min_len(CHUNK);
     let ranges: Vec<Option<Range>> = inner.map(|i| tree::range(&keys, i, max_leaf)).collect();
     let mut kept = 0;

@@ -79,7 +79,7 @@ pub fn build(scene: &Scene, config: &Config) -> Result<Bvh> {
         Input::Leaf(bvh) => return Ok(bvh),
         Input::Prims(prims, bounds) => (prims, bounds),
     };
-    let Sorted { order, .. } = Sorted::of(&prims);
+    let Sorted { order, .. } = Sorted::of(&prims, &bounds);
     let unit = unit(&bounds);
     let cluster = |(i, &prim): (usize, &u32)| Cluster::of(&prims[prim as usize].aabb(), unit, i as u32);
     let mut clusters: Vec<Cluster> = order.par_iter().with_min_len(CHUNK).enumerate().map(cluster).collect();

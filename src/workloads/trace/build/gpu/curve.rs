@@ -1,19 +1,20 @@
-//! The Morton curve on a device: boxes, codes, and the sort.
+//! The Morton curve on a device: codes, and the sort.
 
 use super::BuildTimes;
 use super::kernels::{GROUP_SIZE, Kernel, WORKER_GROUP};
 use super::passes::{Job, Passes};
-use crate::device::vulkan::{Buffer, ReadBuffer, Resource, Texel};
+use crate::device::vulkan::{Buffer, Resource};
 use crate::device::{Stage, VulkanDevice};
 use crate::error::{Error, Result};
 use crate::math::Aabb;
 use crate::scene::Scene;
 use crate::workloads::scan::{self, Scan};
+use crate::workloads::trace::build::codes::Cells;
 use crate::workloads::trace::bvh::{Bvh, BvhNode};
 use crate::workloads::trace::common::prims::{self, CHUNK, Prim};
+use glam::Vec3;
 use rayon::prelude::*;
 
-const BOXES: Stage = Stage("boxes");
 const CODES: Stage = Stage("codes");
 const SORT: Stage = Stage("sort");
 
@@ -64,7 +65,10 @@ pub(super) struct Curve<'d> {
     pub device: &'d VulkanDevice,
     pub shape: Shape,
     pub count: u32,
-    pub boxes: Buffer,
+    /// Three vertices a triangle.
+    pub indices: Buffer,
+    /// Three floats a vertex.
+    pub positions: Buffer,
     pub keys: Buffer,
     pub order: Buffer,
 }
@@ -75,36 +79,24 @@ impl<'d> Curve<'d> {
         passes: &mut Passes,
         device: &'d VulkanDevice,
         scene: &Scene,
-        prims: &[Prim],
+        (prims, bounds): (&[Prim], &Aabb),
         times: &mut BuildTimes,
     ) -> Result<Curve<'d>> {
         let (shape, count) = (Shape::of(device), prims.len() as u32);
         let bytes = u64::from(count) * 4;
-        let refs = prims::triangle_refs(scene, prims);
-        let textures = device.info().software_threads() > 0
-            && [bytemuck::cast_slice(&scene.vertices), bytemuck::cast_slice::<_, u8>(&refs)]
-                .iter()
-                .all(|contents: &&[u8]| device.fits_texture(contents.len(), Texel::Bytes16));
-        let upload = |what: &str, contents: &[u8]| match textures {
-            true => device.texture(what, contents, Texel::Bytes16).map(ReadBuffer::Texture),
-            false => device.storage(what, contents).map(ReadBuffer::Buffer),
-        };
-        let (uploaded, upload) = device.time_upload(|| {
-            let vertices = upload("the vertices", bytemuck::cast_slice(&scene.vertices))?;
-            Ok((vertices, upload("the triangle references", bytemuck::cast_slice(&refs))?))
+        let ((indices, positions), upload) = device.time_upload(|| {
+            let vertices = |prim: &Prim| scene.triangles[prim.triangle() as usize].vertices;
+            let indices: Vec<[u32; 3]> = prims.par_iter().with_min_len(CHUNK).map(vertices).collect();
+            let positions: Vec<Vec3> = scene.vertices.iter().map(|vertex| vertex.position).collect();
+            Ok((device.storage("the triangles", &indices)?, device.storage("the positions", &positions)?))
         })?;
         times.upload_ms = upload.as_secs_f64() * 1e3;
         let words = |what: &str| device.zeroed(what, bytes);
-        let boxes = device.zeroed("the boxes of triangles", bytes * 6)?;
-        let (groups, job) = shape.over(count);
-        let parts = device.zeroed("the boxes of centroids", u64::from(job.stride) * 24)?;
-        let cells = device.zeroed("the cells", 24)?;
-        let bound = [Resource::from(&uploaded.0), Resource::from(&uploaded.1), (&boxes).into(), (&parts).into()];
-        passes.add(BOXES, Kernel::Boxes { textures }, groups, job, &bound)?;
-        let all = Job { count: job.stride, ..Job::default() };
-        passes.add(CODES, Kernel::Cells, 1, all, &[&parts, &cells].map(Resource::from))?;
         let pairs = [(words("the keys")?, words("the order")?), (words("the keys")?, words("the order")?)];
-        passes.add(CODES, Kernel::Codes, groups, job, &[&boxes, &cells, &pairs[0].0].map(Resource::from))?;
+        let Cells { lo, scale } = Cells::of(bounds);
+        let (groups, job) = shape.over(count);
+        let job = Job { lo, scale, ..job };
+        passes.add(CODES, Kernel::Codes, groups, job, &[&indices, &positions, &pairs[0].0].map(Resource::from))?;
 
         let workers = shape.workers.min(count).max(count.div_ceil(MOST_KEYS));
         let bits = shape.bits;
@@ -123,7 +115,7 @@ impl<'d> Curve<'d> {
             from = 1 - from;
         }
         let (keys, order) = pairs[from].clone();
-        Ok(Curve { device, shape, count, boxes, keys, order })
+        Ok(Curve { device, shape, count, indices, positions, keys, order })
     }
 
     /// The tree with the triangle references of its leaves, whose triangles `sorted` has in order.

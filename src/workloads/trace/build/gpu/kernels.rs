@@ -1,7 +1,7 @@
 //! Kernel variants of builders.
 
-use super::super::codes::{CELLS, SMALLEST_EXTENT};
-use crate::device::vulkan::{Binding, BindingKind, ReadBuffer, TEXTURE_WIDTH, Texel};
+use super::super::codes::CELLS;
+use crate::device::vulkan::{Binding, BindingKind};
 use crate::device::{Constants, Source, assemble};
 use crate::error::{Error, Result};
 use crate::math;
@@ -16,10 +16,6 @@ pub const WORKER_GROUP: u32 = 16;
 /// One kernel variant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kernel {
-    /// Boxes of triangles; scene and triangle references are in textures, or not.
-    Boxes { textures: bool },
-    /// The cells of Morton codes.
-    Cells,
     /// Morton codes.
     Codes,
     /// Counts digits of so many bits.
@@ -30,8 +26,10 @@ pub(super) enum Kernel {
     Flags,
     /// The list of these.
     List,
-    /// Their ranges and leaves.
+    /// Their ranges and children.
     Nodes,
+    /// Boxes of leaves.
+    Leaves,
     /// Boxes of a level of inner nodes.
     Refit,
     /// Boxes of the levels above.
@@ -56,23 +54,21 @@ impl Kernel {
     /// Every variant, with digits of `bits` bits.
     fn all(bits: u32) -> Vec<Kernel> {
         use Kernel::*;
-        let mut all: Vec<Kernel> = [false, true].map(|textures| Boxes { textures }).into();
-        all.extend([Cells, Codes, Count { bits }]);
+        let mut all = vec![Codes, Count { bits }];
         all.extend([true, false].map(|is_first| Scatter { bits, is_first }));
-        all.extend([Flags, List, Nodes, Refit, Top, Clusters, Search, Choose, Merge, Number, Descend]);
+        all.extend([Flags, List, Nodes, Leaves, Refit, Top, Clusters, Search, Choose, Merge, Number, Descend]);
         all
     }
 
     fn file(self) -> &'static str {
         match self {
-            Kernel::Boxes { .. } => "trace/build/boxes.wgsl",
-            Kernel::Cells => "trace/build/cells.wgsl",
             Kernel::Codes => "trace/build/codes.wgsl",
             Kernel::Count { .. } => "trace/build/count.wgsl",
             Kernel::Scatter { .. } => "trace/build/scatter.wgsl",
             Kernel::Flags => "trace/build/flags.wgsl",
             Kernel::List => "trace/build/list.wgsl",
             Kernel::Nodes => "trace/build/nodes.wgsl",
+            Kernel::Leaves => "trace/build/leaves.wgsl",
             Kernel::Refit => "trace/build/refit.wgsl",
             Kernel::Top => "trace/build/top.wgsl",
             Kernel::Clusters => "trace/build/clusters.wgsl",
@@ -88,7 +84,6 @@ impl Kernel {
     pub fn label(self) -> String {
         let name = self.file().trim_start_matches("trace/build/").trim_end_matches(".wgsl");
         let variant = match self {
-            Kernel::Boxes { textures: true } => " textures",
             Kernel::Scatter { is_first: true, .. } => " first",
             _ => "",
         };
@@ -100,17 +95,13 @@ impl Kernel {
         let mut constants = Constants::default();
         constants.unsigned("GROUP_SIZE", GROUP_SIZE);
         constants.unsigned("WORKER_GROUP", WORKER_GROUP);
-        constants.unsigned("TEXTURE_WIDTH", TEXTURE_WIDTH);
         constants.float("CELLS", CELLS);
-        constants.float("SMALLEST_EXTENT", SMALLEST_EXTENT);
         constants.float("MIN_POSITIVE", f32::MIN_POSITIVE);
         constants.float("T_MAX", math::T_MAX);
-        constants.unsigned("DEPTH", super::lbvh::LEVELS + 1);
+        constants.unsigned("DEPTH", super::lbvh::DEPTH);
+        constants.unsigned("LEAVES", super::lbvh::LEAVES);
         let mut slots = Vec::new();
         match self {
-            Kernel::Boxes { textures } => {
-                slots.push(("memory", if textures { "trace/textures.wgsl" } else { "trace/buffers.wgsl" }));
-            }
             Kernel::Count { bits } => constants.unsigned("DIGITS", 1 << bits),
             Kernel::Scatter { bits, is_first } => {
                 constants.unsigned("DIGITS", 1 << bits);
@@ -124,20 +115,22 @@ impl Kernel {
 
     /// The bindings that its text declares.
     pub fn layout(self) -> Vec<Binding> {
-        let texels = |textures| ReadBuffer::kind(textures, Texel::Bytes16);
         let kinds: &[BindingKind] = match self {
-            Kernel::Boxes { textures } => &[Uniform, texels(textures), texels(textures), ReadWrite, ReadWrite],
-            Kernel::Cells | Kernel::Count { .. } | Kernel::Search | Kernel::Number | Kernel::Flags | Kernel::List => {
+            Kernel::Count { .. } | Kernel::Search | Kernel::Number | Kernel::Flags | Kernel::List => {
                 &[Uniform, Read, ReadWrite]
             }
-            Kernel::Codes | Kernel::Clusters => &[Uniform, Read, Read, ReadWrite],
+            Kernel::Codes => &[Uniform, Read, Read, ReadWrite],
+            Kernel::Clusters => &[Uniform, Read, Read, Read, ReadWrite],
+            Kernel::Leaves => &[Uniform, Read, Read, Read, Read, ReadWrite],
             Kernel::Scatter { is_first: true, .. } => &[Uniform, Read, ReadWrite, ReadWrite, ReadWrite],
             Kernel::Scatter { .. } => &[Uniform, Read, ReadWrite, ReadWrite, ReadWrite, Read],
             Kernel::Choose => &[Uniform, Read, ReadWrite, ReadWrite],
             Kernel::Merge => &[Uniform, Read, Read, Read, Read, ReadWrite, ReadWrite, ReadWrite],
-            Kernel::Descend => &[Uniform, Read, Read, Read, Read, Read, ReadWrite, ReadWrite, ReadWrite, ReadWrite],
+            Kernel::Descend => {
+                &[Uniform, Read, Read, Read, Read, Read, Read, ReadWrite, ReadWrite, ReadWrite, ReadWrite]
+            }
             Kernel::Nodes => {
-                &[Uniform, Read, Read, ReadWrite, ReadWrite, ReadWrite, ReadWrite, ReadWrite, Read, Read, Read]
+                &[Uniform, Read, ReadWrite, ReadWrite, ReadWrite, ReadWrite, ReadWrite, ReadWrite, Read, Read]
             }
             Kernel::Refit | Kernel::Top => {
                 &[Uniform, Read, ReadWrite, ReadWrite, ReadWrite, ReadWrite, ReadWrite, ReadWrite]

@@ -13,11 +13,16 @@ use crate::workloads::trace::build::Input;
 use crate::workloads::trace::bvh::{Bvh, BvhNode};
 
 const TREE: Stage = Stage("tree");
+const NODES: Stage = Stage("nodes");
 const REFIT: Stage = Stage("refit");
 
 /// Levels of inner nodes, from the bottom up, that get their boxes in a pass of their own. Of a usual tree hardly any
 /// node is above them.
 pub(super) const LEVELS: u32 = 14;
+
+/// Places behind the lengths of the levels' lists: the levels of inner nodes of the whole tree, the number of leaves.
+pub(super) const DEPTH: u32 = LEVELS + 1;
+pub(super) const LEAVES: u32 = LEVELS + 2;
 
 /// Builds the tree of [`crate::workloads::trace::build::lbvh::build`] on a device.
 ///
@@ -36,7 +41,7 @@ pub fn build(
     };
     let mut times = BuildTimes::default();
     let mut passes = Passes::new(device);
-    let curve = Curve::new(&mut passes, device, scene, &prims, &mut times)?;
+    let curve = Curve::new(&mut passes, device, scene, (&prims, &bounds), &mut times)?;
     let inner = curve.count - 1;
     let ranks = device.zeroed("the ranks of nodes", u64::from(curve.count) * 4)?;
     let kept_nodes = device.zeroed("the nodes of the tree", u64::from(inner) * 4)?;
@@ -54,13 +59,18 @@ pub fn build(
     let nodes = device.zeroed("the nodes", (2 + 2 * u64::from(kept)) * size_of::<BvhNode>() as u64)?;
     let (slots, waiting, heights) = (list("the places of nodes")?, list("the children")?, list("the heights")?);
     let lists = [list("a list of nodes")?, list("a list of nodes")?];
-    let lengths = device.zeroed("the lengths of lists", u64::from(LEVELS + 2) * 4)?;
+    let lengths = device.zeroed("the lengths of lists", u64::from(LEAVES + 1) * 4)?;
+    let leaves = device.zeroed("the leaves", (u64::from(kept) + 1) * 4)?;
     let mut passes = Passes::new(device);
     let (groups, job) = curve.shape.over(kept);
     let job = Job { max_leaf, leaves: curve.count, ..job };
-    let Curve { keys, boxes, order, .. } = &curve;
-    let bound = [keys, boxes, &nodes, &slots, &waiting, &lengths, &lists[0], order, &ranks, &kept_nodes];
-    passes.add(TREE, Kernel::Nodes, groups, job, &bound.map(Resource::from))?;
+    let Curve { indices, positions, keys, order, .. } = &curve;
+    let bound = [keys, &leaves, &nodes, &slots, &waiting, &lengths, &lists[0], &ranks, &kept_nodes];
+    passes.add(NODES, Kernel::Nodes, groups, job, &bound.map(Resource::from))?;
+    let (groups_of_leaves, job_of_leaves) = curve.shape.over(kept + 1);
+    let job_of_leaves = Job { max_leaf, ..job_of_leaves };
+    let bound = [indices, positions, order, &leaves, &nodes].map(Resource::from);
+    passes.add(NODES, Kernel::Leaves, groups_of_leaves, job_of_leaves, &bound)?;
     for level in 0..=LEVELS {
         let [list, next] = [level, level + 1].map(|level| &lists[level as usize % 2]);
         let bound = [list, &heights, &nodes, &slots, &waiting, &lengths, next].map(Resource::from);
@@ -69,7 +79,7 @@ pub fn build(
     }
     times.add(passes.run(interrupted)?);
     let nodes: Vec<BvhNode> = device.read(&nodes, 2 + 2 * kept as usize)?;
-    let lengths: Vec<u32> = device.read(&lengths, LEVELS as usize + 2)?;
-    let depth = lengths[LEVELS as usize + 1];
+    let lengths: Vec<u32> = device.read(&lengths, DEPTH as usize + 1)?;
+    let depth = lengths[DEPTH as usize];
     curve.tree(scene, &prims, bounds, &curve.order, nodes, depth).map(|bvh| (bvh, times))
 }

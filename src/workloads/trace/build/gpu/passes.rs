@@ -6,6 +6,7 @@ use crate::device::{Frame, FrameTime, Interrupted, Pass, Stage, Submissions, Vul
 use crate::error::Result;
 use crate::workloads::scan::Scan;
 use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
 use std::sync::Arc;
 
 /// `Job` of `kernels/trace/build/job.wgsl`.
@@ -25,6 +26,10 @@ pub struct Job {
     pub forced: u32,
     pub leaves: u32,
     pub unit: f32,
+    pub lo: Vec3,
+    pub pad0: f32,
+    pub scale: Vec3,
+    pub pad1: f32,
 }
 
 /// Passes in their order.

@@ -36,10 +36,10 @@ pub fn build(
     };
     let mut times = BuildTimes::default();
     let mut passes = Passes::new(device);
-    let curve = Curve::new(&mut passes, device, scene, &prims, &mut times)?;
+    let curve = Curve::new(&mut passes, device, scene, (&prims, &bounds), &mut times)?;
     let growing = Growing::new(&curve, config, unit(&bounds))?;
     let (groups, job) = curve.shape.over(curve.count);
-    let bound = [&curve.boxes, &curve.order, &growing.clusters[0]].map(Resource::from);
+    let bound = [&curve.indices, &curve.positions, &curve.order, &growing.clusters[0]].map(Resource::from);
     passes.add(CLUSTERS, Kernel::Clusters, groups, job, &bound)?;
     times.add(passes.run(interrupted)?);
     // The first inner node of each pass
@@ -135,8 +135,9 @@ impl<'a> Growing<'a> {
         let sorted = device.zeroed("the order of leaves", u64::from(count) * 4)?;
         let deepest = device.zeroed("the depth", 4)?;
         let mut passes = Passes::new(device);
-        let Curve { boxes, order, .. } = self.curve;
-        let bound = [boxes, order, &self.inner, &self.triangles, ranks, &places, &sorted, &nodes, &deepest];
+        let Curve { indices, positions, order, .. } = self.curve;
+        let bound =
+            [indices, positions, order, &self.inner, &self.triangles, ranks, &places, &sorted, &nodes, &deepest];
         for made in firsts.windows(2).rev() {
             let (groups, job) = shape.over(made[1] - made[0]);
             let job = Job { first: made[0], leaves: count, max_leaf, ..job };
