@@ -110,7 +110,7 @@ fn planted_faults_are_found() {
         ("a mask that forgets a row", "& 255u, member < WIDTH);", "& 127u, member < WIDTH);"),
         ("a leaf that forgets its last triangle", "min(count - begin, 8u)", "min(max(count, 2u) - 1u - begin, 8u)"),
         ("a child that is never tested", "countOneBits(open));", "countOneBits(open));\n    open &= ~2u;"),
-        ("the interval of one direction", "let b = from_lo * inverse_hi;", "let b = from_lo * inverse_lo;"),
+        ("the interval of one corner", "inverse_hi = cluster_max3(inverse_hi);", "inverse_hi = inverse_lo;"),
         ("the nearest of all hits", "farthest = cluster_max(t);", "farthest = -cluster_max(-nearest_t[0]);"),
     ];
     for (fault, right, wrong) in faults {
