@@ -82,6 +82,8 @@ fn every_variant_is_valid() {
         "bvh-stack:build=spatial,cull=off",
         "bvh:build=spatial",
         "bvh-stack:reflections=staged",
+        "bvh-subgroup:rays=1",
+        "bvh-subgroup:width=2",
         "bvh-quantised:cull=off",
         "bvh-quantised:build=spatial",
         "bvh4:order=octant",

@@ -3,7 +3,7 @@
 mod packet;
 
 use super::algorithm::{Algorithm, Builder, Parameter, Parameters, Traversal};
-use super::bvh::widened;
+use super::bvh::{self, widened};
 use super::cpu::Twin;
 use super::method::Group;
 use super::options::{Axis, Kind, OptionInfo};
@@ -34,7 +34,22 @@ static BUILDER: Builder = Builder {
         4 => "4",
         _ => "8",
     },
+    options: &OPTIONS,
     ..wide::builder("bvh-subgroup", |s, scene| wide::build(s, scene, width_of(s) as usize))
+};
+
+/// Those of the BVH, with leaves that fill the lanes.
+const OPTIONS: [OptionInfo; bvh::options::OPTIONS.len()] = {
+    let mut options = [bvh::options::OPTIONS[0]; bvh::options::OPTIONS.len()];
+    let mut i = 0;
+    while i < options.len() {
+        options[i] = bvh::options::OPTIONS[i];
+        if let b"max_leaf" = options[i].key.as_bytes() {
+            options[i].default = "8";
+        }
+        i += 1;
+    }
+    options
 };
 
 const WIDTH: OptionInfo = OptionInfo::new(
