@@ -1,16 +1,21 @@
 // The inner nodes that are kept, one after another. Twin: src/workloads/trace/build/lbvh.rs.
 
 //!include trace/build/job.wgsl
+//!include trace/build/radix_tree.wgsl
 
-@group(0) @binding(1) var<storage, read> ranks: array<u32>; // nodes that are kept before each, and their number
-@group(0) @binding(2) var<storage, read_write> kept: array<u32>;
+@group(0) @binding(2) var<storage, read> places: array<u32>; // nodes that are kept before those of each worker
+@group(0) @binding(3) var<storage, read_write> kept: array<u32>;
 
-@compute @workgroup_size(GROUP_SIZE)
+@compute @workgroup_size(WORKER_GROUP)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    for (var i = id.x; i < job.count; i += job.stride) {
-        let rank = ranks[i];
-        if (ranks[i + 1u] != rank) {
-            kept[rank] = i;
+    if (id.x < job.workers) {
+        let first = id.x * job.chunk;
+        var place = places[id.x];
+        for (var i = first; i < min(first + job.chunk, job.count); i += 1u) {
+            if (is_kept(i32(i))) {
+                kept[place] = i;
+                place += 1u;
+            }
         }
     }
 }

@@ -6,13 +6,12 @@
 //!include trace/build/lists.wgsl
 
 @group(0) @binding(2) var<storage, read_write> leaves: array<u32>; // nodes that are leaves, in any order
-@group(0) @binding(8) var<storage, read> ranks: array<u32>;        // nodes that are kept before each
-@group(0) @binding(9) var<storage, read> kept: array<u32>;
+@group(0) @binding(8) var<storage, read> kept: array<u32>;
 
 fn child(slot: u32, node: u32, first: u32, last: u32) -> u32 {
     let count = last - first + 1u;
     if (count > job.max_leaf) {
-        slots[ranks[node]] = slot;
+        slots[node] = slot;
         return 1u;
     }
     nodes[slot * 2u].w = first;

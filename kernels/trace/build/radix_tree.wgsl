@@ -22,3 +22,10 @@ fn side_of(key: u32, i: i32) -> Side {
     let before = common_bits(key, i, i - 1);
     return Side(select(-1, 1, after > before), min(after, before));
 }
+
+// True for an inner node of more triangles than a leaf may have.
+fn is_kept(i: i32) -> bool {
+    let key = keys[i];
+    let side = side_of(key, i);
+    return common_bits(key, i, i + i32(job.max_leaf) * side.step) > side.least;
+}

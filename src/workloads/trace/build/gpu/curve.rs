@@ -27,15 +27,15 @@ const SOFTWARE_BITS: u32 = 10;
 /// Bits of a digit that is sorted by on a GPU: few counters.
 pub(super) const GPU_BITS: u32 = 6;
 
-/// Most keys of a worker that sorts: a loop of a software driver ends after 65,535 iterations.
-const MOST_KEYS: u32 = 32_768;
+/// Most elements of a chunk: a loop of a software driver ends after 65,535 iterations.
+const LONGEST_CHUNK: u32 = 32_768;
 
 /// How the work is shared out on a device. It changes no byte of a tree.
 #[derive(Clone, Copy)]
 pub(super) struct Shape {
     /// Most work-groups of a pass.
     groups: u32,
-    /// Least invocations that sort.
+    /// Least invocations that take chunks.
     workers: u32,
     /// Bits of a digit.
     bits: u32,
@@ -51,6 +51,12 @@ impl Shape {
 
     pub fn groups(&self, count: u32) -> u32 {
         count.div_ceil(GROUP_SIZE).min(self.groups)
+    }
+
+    /// Work-groups of a pass whose workers take chunks of `count` elements, and its job.
+    pub fn in_chunks(&self, count: u32) -> (u32, Job) {
+        let workers = self.workers.min(count).max(count.div_ceil(LONGEST_CHUNK));
+        (workers.div_ceil(WORKER_GROUP), Job { count, workers, chunk: count.div_ceil(workers), ..Job::default() })
     }
 
     /// Work-groups of a pass over `count` elements, and its job.
@@ -98,13 +104,13 @@ impl<'d> Curve<'d> {
         let job = Job { lo, scale, ..job };
         passes.add(CODES, Kernel::Codes, groups, job, &[&indices, &positions, &pairs[0].0].map(Resource::from))?;
 
-        let workers = shape.workers.min(count).max(count.div_ceil(MOST_KEYS));
+        let (groups, chunks) = shape.in_chunks(count);
+        let workers = chunks.workers;
         let bits = shape.bits;
         let table = device.zeroed("the counters of digits", (u64::from(workers) << bits) * 4)?;
-        let groups = workers.div_ceil(WORKER_GROUP);
         let mut from = 0;
         for shift in (0..CODE_BITS).step_by(bits as usize) {
-            let job = Job { count, workers, chunk: count.div_ceil(workers), shift, ..Job::default() };
+            let job = Job { shift, ..chunks };
             let ((keys, order), (sorted_keys, sorted)) = (&pairs[from], &pairs[1 - from]);
             passes.add(SORT, Kernel::Count { bits }, groups, job, &[keys, &table].map(Resource::from))?;
             passes.scan(SORT, Scan::in_place(device, scan::Options::default(), &table, workers << bits)?);

@@ -10,7 +10,7 @@ use crate::workloads::kernel_files::FILES;
 /// Invocations of a work-group.
 pub const GROUP_SIZE: u32 = 64;
 
-/// Invocations of a work-group that sorts.
+/// Invocations of a work-group whose workers take chunks.
 pub const WORKER_GROUP: u32 = 16;
 
 /// One kernel variant.
@@ -116,10 +116,8 @@ impl Kernel {
     /// The bindings that its text declares.
     pub fn layout(self) -> Vec<Binding> {
         let kinds: &[BindingKind] = match self {
-            Kernel::Count { .. } | Kernel::Search | Kernel::Number | Kernel::Flags | Kernel::List => {
-                &[Uniform, Read, ReadWrite]
-            }
-            Kernel::Codes => &[Uniform, Read, Read, ReadWrite],
+            Kernel::Count { .. } | Kernel::Search | Kernel::Number | Kernel::Flags => &[Uniform, Read, ReadWrite],
+            Kernel::Codes | Kernel::List => &[Uniform, Read, Read, ReadWrite],
             Kernel::Clusters => &[Uniform, Read, Read, Read, ReadWrite],
             Kernel::Leaves => &[Uniform, Read, Read, Read, Read, ReadWrite],
             Kernel::Scatter { is_first: true, .. } => &[Uniform, Read, ReadWrite, ReadWrite, ReadWrite],
@@ -129,11 +127,9 @@ impl Kernel {
             Kernel::Descend => {
                 &[Uniform, Read, Read, Read, Read, Read, Read, ReadWrite, ReadWrite, ReadWrite, ReadWrite]
             }
-            Kernel::Nodes => {
-                &[Uniform, Read, ReadWrite, ReadWrite, ReadWrite, ReadWrite, ReadWrite, ReadWrite, Read, Read]
-            }
+            Kernel::Nodes => &[Uniform, Read, ReadWrite, ReadWrite, ReadWrite, ReadWrite, ReadWrite, ReadWrite, Read],
             Kernel::Refit | Kernel::Top => {
-                &[Uniform, Read, ReadWrite, ReadWrite, ReadWrite, ReadWrite, ReadWrite, ReadWrite]
+                &[Uniform, Read, ReadWrite, ReadWrite, ReadWrite, ReadWrite, ReadWrite, ReadWrite, Read]
             }
         };
         (0..).zip(kinds).map(|(number, &kind)| Binding::new(number, kind)).collect()

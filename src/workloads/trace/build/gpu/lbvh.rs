@@ -43,21 +43,21 @@ pub fn build(
     let mut passes = Passes::new(device);
     let curve = Curve::new(&mut passes, device, scene, (&prims, &bounds), &mut times)?;
     let inner = curve.count - 1;
-    let ranks = device.zeroed("the ranks of nodes", u64::from(curve.count) * 4)?;
     let kept_nodes = device.zeroed("the nodes of the tree", u64::from(inner) * 4)?;
-    let (groups, job) = curve.shape.over(inner);
+    let (groups, job) = curve.shape.in_chunks(inner);
     let job = Job { max_leaf, leaves: curve.count, ..job };
-    passes.add(TREE, Kernel::Flags, groups, job, &[&curve.keys, &ranks].map(Resource::from))?;
-    // With one word more, which stays zero, each flag is the difference of two sums
-    passes.scan(TREE, Scan::in_place(device, scan::Options::default(), &ranks, curve.count)?);
-    passes.add(TREE, Kernel::List, groups, job, &[&ranks, &kept_nodes].map(Resource::from))?;
+    let numbers = device.zeroed("the numbers of nodes", u64::from(job.workers) * 4)?;
+    passes.add(TREE, Kernel::Flags, groups, job, &[&curve.keys, &numbers].map(Resource::from))?;
+    passes.scan(TREE, Scan::in_place(device, scan::Options::default(), &numbers, job.workers)?);
+    passes.add(TREE, Kernel::List, groups, job, &[&curve.keys, &numbers, &kept_nodes].map(Resource::from))?;
     times.add(passes.run(interrupted)?);
     let kept = passes.total()?;
 
     // How many nodes there are decides how much memory they take
     let list = |what: &str| device.zeroed(what, u64::from(kept) * 4);
     let nodes = device.zeroed("the nodes", (2 + 2 * u64::from(kept)) * size_of::<BvhNode>() as u64)?;
-    let (slots, waiting, heights) = (list("the places of nodes")?, list("the children")?, list("the heights")?);
+    let slots = device.zeroed("the places of nodes", u64::from(inner) * 4)?;
+    let (waiting, heights) = (list("the children without boxes")?, list("the heights of nodes")?);
     let lists = [list("a list of nodes")?, list("a list of nodes")?];
     let lengths = device.zeroed("the lengths of lists", u64::from(LEAVES + 1) * 4)?;
     let leaves = device.zeroed("the leaves", (u64::from(kept) + 1) * 4)?;
@@ -65,7 +65,7 @@ pub fn build(
     let (groups, job) = curve.shape.over(kept);
     let job = Job { max_leaf, leaves: curve.count, ..job };
     let Curve { indices, positions, keys, order, .. } = &curve;
-    let bound = [keys, &leaves, &nodes, &slots, &waiting, &lengths, &lists[0], &ranks, &kept_nodes];
+    let bound = [keys, &leaves, &nodes, &slots, &waiting, &lengths, &lists[0], &kept_nodes];
     passes.add(NODES, Kernel::Nodes, groups, job, &bound.map(Resource::from))?;
     let (groups_of_leaves, job_of_leaves) = curve.shape.over(kept + 1);
     let job_of_leaves = Job { max_leaf, ..job_of_leaves };
@@ -73,7 +73,7 @@ pub fn build(
     passes.add(NODES, Kernel::Leaves, groups_of_leaves, job_of_leaves, &bound)?;
     for level in 0..=LEVELS {
         let [list, next] = [level, level + 1].map(|level| &lists[level as usize % 2]);
-        let bound = [list, &heights, &nodes, &slots, &waiting, &lengths, next].map(Resource::from);
+        let bound = [list, &heights, &nodes, &slots, &waiting, &lengths, next, &kept_nodes].map(Resource::from);
         let (kernel, groups) = if level < LEVELS { (Kernel::Refit, groups) } else { (Kernel::Top, 1) };
         passes.add(REFIT, kernel, groups, Job { level, ..job }, &bound)?;
     }
