@@ -48,8 +48,8 @@ fn wide_trees_visit_fewer_nodes_and_test_more_boxes() {
         assert!(counts.iter().all(|sums| sums.rays == stack.rays), "{name}");
         for two in [stack, quantised] {
             assert!(four.inner < two.inner && four.steps() < two.steps(), "{name}: {two:?} {four:?}");
-            // One node of four boxes stands for up to three of two, so that here boxes may be fewer (terrain: 3.5 %)
-            assert!(four.boxes * 100 >= two.boxes * 90, "{name}: {two:?} {four:?}");
+            // One node of four boxes stands for up to three of two, so that here boxes may be fewer (hall: 10 %)
+            assert!(four.boxes * 100 >= two.boxes * 80, "{name}: {two:?} {four:?}");
             assert!(eight.boxes >= two.boxes, "{name}: {two:?} {eight:?}");
         }
         assert!(eight.inner < four.inner && eight.steps() < four.steps(), "{name}: {four:?} {eight:?}");
