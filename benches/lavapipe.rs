@@ -34,7 +34,7 @@ const STRUCTURES: [&str; 6] = [
     "bvh-stack",
     "bvh-quantised",
     "bvh-subgroup",
-    "bvh-subgroup:max_leaf=8",
+    "bvh-subgroup:max_leaf=4",
     "bvh-subgroup:width=2,rays=1",
 ];
 
@@ -46,14 +46,14 @@ type Bar = (&'static str, &'static str, &'static str, [f64; 2]);
 
 const BARS: [Bar; 9] = [
     ("hits, obvhs", "obvhs", "bvh-subgroup hits", [3.8, 2.4]),
-    ("hits with leaves of eight, obvhs", "obvhs", "bvh-subgroup:max_leaf=8 hits", [3.8, 2.4]),
+    ("hits with leaves of four, obvhs", "obvhs", "bvh-subgroup:max_leaf=4 hits", [3.8, 2.4]),
     ("hits, bvh-stack's frame", "bvh-stack:triangles=indexed", "bvh-subgroup hits", [3.8, 2.3]),
     ("frame, obvhs", "obvhs", "bvh-subgroup", [2.0, 1.6]),
     ("frame, bvh-stack as it was", "bvh-stack:triangles=indexed", "bvh-subgroup", [2.0, 1.6]),
     (
-        "frame with leaves of eight, bvh-stack as it was",
+        "frame with leaves of four, bvh-stack as it was",
         "bvh-stack:triangles=indexed",
-        "bvh-subgroup:max_leaf=8",
+        "bvh-subgroup:max_leaf=4",
         [2.0, 1.6],
     ),
     ("traversal laid out anew", "bvh-stack:triangles=indexed rays", "bvh-quantised rays", [1.15, 1.12]),

@@ -23,7 +23,7 @@ use rtbench::workloads::trace::{Selection, Structure};
 use std::sync::Arc;
 
 /// Every builder, with options that lead through other code.
-pub const SELECTIONS: [&str; 63] = [
+pub const SELECTIONS: [&str; 69] = [
     "grid",
     "grid:factor=1",
     "grid:x=5",
@@ -87,6 +87,12 @@ pub const SELECTIONS: [&str; 63] = [
     "bvh:build=lbvh,max_leaf=1",
     "bvh:build=ploc-passes",
     "bvh:build=ploc-passes,max_leaf=1,radius=2",
+    "bvh-subgroup",
+    "bvh-subgroup:width=2",
+    "bvh-subgroup:width=4,max_leaf=1",
+    "bvh-stackless",
+    "bvh-stackless:build=spatial,max_leaf=1,alpha=0",
+    "query",
 ];
 
 pub fn build(selection: &str, scene: &Scene, threads: usize) -> Arc<dyn Structure> {

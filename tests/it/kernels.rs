@@ -34,7 +34,7 @@ fn check(source: &Source) -> Result<naga::Module, String> {
     };
     let module = naga::front::wgsl::parse_str(&source.text)
         .map_err(|e| format!("{}: {}", at(e.location(&source.text)), e.message()))?;
-    Validator::new(ValidationFlags::all(), Capabilities::RAY_QUERY)
+    Validator::new(ValidationFlags::all(), Capabilities::RAY_QUERY | Capabilities::SUBGROUP)
         .validate(&module)
         .map_err(|e| format!("{}: {:?}", at(e.location(&source.text)), e.into_inner()))?;
     Ok(module)
@@ -43,7 +43,8 @@ fn check(source: &Source) -> Result<naga::Module, String> {
 /// Kernels of a method.
 fn variants(method: &Method) -> usize {
     let staged = if method.is_staged(2) { 4 } else { 0 };
-    (12 + staged) * 4 * if method.traversal.leaf_order { 2 } else { 1 }
+    let packets = if method.traversal.packets.is_some() { 10 } else { 0 };
+    (12 + staged + packets) * 4 * if method.traversal.leaf_order { 2 } else { 1 }
 }
 
 #[test]
@@ -81,6 +82,8 @@ fn every_variant_is_valid() {
         "bvh-stack:build=spatial,cull=off",
         "bvh:build=spatial",
         "bvh-stack:reflections=staged",
+        "bvh-subgroup:rays=1",
+        "bvh-subgroup:width=2",
         "bvh-quantised:cull=off",
         "bvh-quantised:build=spatial",
         "bvh4:order=octant",

@@ -18,8 +18,11 @@ mod journals; // journals of any number of rows
 mod kernel_costs; // the static cost of kernels by hand, and that none is left out
 mod kernels; // every kernel variant through naga, struct layouts, no GPU
 mod language; // comments and documents are at most 120 columns wide
+mod loops; // forms of the loops of bvh-stack, and ways without a stack
 mod many; // shards, merged runs, runs that are killed and resumed
 mod meshes; // closed meshes, and rays at their vertices and edges
+mod packets; // planted faults in packets of a subgroup, triangles in leaf order
+mod query; // the driver's own structure against a twin, and its rows
 mod reference; // rays traced by Embree (needs RTBENCH_SCENES)
 mod report; // tables of any source in every format, parts of documents
 mod results; // journal, CSV and JSON agree; statistics; rays and hits

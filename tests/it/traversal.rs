@@ -83,7 +83,7 @@ fn names() -> Vec<&'static str> {
 }
 
 /// Ways to walk a structure other than each one's own.
-const OTHERS: [&str; 65] = [
+const OTHERS: [&str; 80] = [
     "kdtree:search=restart",
     "kdtree:search=pushdown",
     "kdtree:stack=1",
@@ -151,6 +151,21 @@ const OTHERS: [&str; 65] = [
     "bvh4:stack=short,entries=3",
     "bvh8:stack=short",
     "bvh8:build=spatial,max_leaf=1,alpha=0,stack=short,entries=2",
+    "bvh-stack:triangles=indexed",
+    "bvh-stack:triangles=leaf-order",
+    "bvh-stack:triangles=leaf-order,fetch=buffers",
+    "bvh-subgroup:rays=1",
+    "bvh-subgroup:rays=2,width=2",
+    "bvh-subgroup:rays=4,width=4,fetch=buffers",
+    "bvh-subgroup:build=spatial,max_leaf=1,alpha=0",
+    "bvh-subgroup:max_leaf=15,tiles=2",
+    "bvh-stack:loop=if-if",
+    "bvh-stack:loop=persistent",
+    "bvh-stack:loop=speculative",
+    "bvh-stack:loop=speculative,cull=off",
+    "bvh-stackless:search=trail",
+    "bvh-stackless:build=spatial,max_leaf=1,alpha=0",
+    "bvh-stackless:build=spatial,max_leaf=1,alpha=0,search=trail",
 ];
 
 pub fn all_names() -> Vec<&'static str> {

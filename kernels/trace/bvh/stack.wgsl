@@ -2,4 +2,4 @@
 
 //!include lib/independent.wgsl
 //!include trace/bvh/node.wgsl
-//!include trace/bvh/while_while.wgsl
+//!slot loop

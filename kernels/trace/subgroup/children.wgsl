@@ -74,7 +74,7 @@ fn test_children(node: u32, rows: u32) -> Children {
     if (WIDTH > 4u) {
         wanted = select(wanted, cluster_or(met.y), member >= 4u);
     }
-    wanted = (wanted >> ((member & 3u) * 8u)) & 255u;
+    wanted = select(0u, (wanted >> ((member & 3u) * 8u)) & 255u, member < WIDTH);
     let distance = select(0.0, interval.x, interval.x > 0.0);
     let key = (bitcast<u32>(distance) & DISTANCE_BITS) | (wanted << 3u) | member;
     return Children(select(key, NONE, wanted == 0u), slot.reference);

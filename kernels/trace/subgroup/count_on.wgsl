@@ -41,7 +41,6 @@ fn add_rows_tests(rows: u32, n: u32) {
 
 fn keep_hit(index: u32, triangle_ref: u32, k: u32) {
     pixels[index].triangle = triangle_ref;
+    pixels[index].counters = array<Counters, RAY_TYPES>();
     pixels[index].counters[PRIMARY] = row_counters[k];
-    pixels[index].counters[SHADOW] = Counters();
-    pixels[index].counters[REFLECTED] = Counters();
 }

@@ -135,7 +135,8 @@ fn trace_packet(all_rows: u32) {
                 if (is_done) {
                     break;
                 }
-                depth -= 1u;
+                // Never below 0: lavapipe reads the stack for clusters that are done as well
+                depth = max(depth, 1u) - 1u;
                 add_rows_pops(all_rows);
                 children = Children(stack_keys[depth], stack_refs[depth]);
                 least = cluster_least(children.key);

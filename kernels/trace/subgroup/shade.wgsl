@@ -1,5 +1,5 @@
-// Second pass of a frame of packets: the surfaces that primary rays hit, their light, and secondary rays, one for each
-// invocation. One invocation per pixel, as in trace/render.wgsl. Twin: src/workloads/trace/render.rs.
+// Second pass of a frame of packets: what follows from the nearest hits of primary rays, with secondary rays one by
+// one. One invocation per pixel, as in trace/render.wgsl. Twin: src/workloads/trace/render.rs.
 
 //!include trace/path.wgsl
 //!slot update

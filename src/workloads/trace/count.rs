@@ -131,8 +131,8 @@ impl CounterSums {
     }
 }
 
-/// WGSL of the counting kernels, or of the timed ones, where every function is empty: `begin_ray(kind)`, and for each
-/// counter `count_EVENT()` and `add_FIELD(n)`.
+/// WGSL of the counting kernels, or of the timed ones, where every function is empty: `begin_pixel()` for invocations
+/// with several pixels, `begin_ray(kind)`, and for each counter `count_EVENT()` and `add_FIELD(n)`.
 pub fn wgsl(counting: bool) -> String {
     let mut text = String::new();
     let mut line = |arguments: std::fmt::Arguments| writeln!(text, "{arguments}").expect("a String takes all text");
@@ -143,6 +143,8 @@ pub fn wgsl(counting: bool) -> String {
         line(format_args!("var<private> counters: array<Counters, RAY_TYPES>; // of this invocation, by ray type"));
         line(format_args!("var<private> ray_kind: u32;"));
     }
+    let reset = if counting { "counters = array<Counters, RAY_TYPES>();" } else { "" };
+    line(format_args!("fn begin_pixel() {{ {reset} }}"));
     let begin = if counting { "ray_kind = kind; count_ray();" } else { "" };
     line(format_args!("fn begin_ray(kind: u32) {{ {begin} }}"));
     for (event, field) in LIST {
@@ -166,7 +168,7 @@ counters! {
     pop: pops,
     /// A restart at (or below) the root.
     restart: restarts,
-    /// A rope is followed from a leaf to its neighbour.
+    /// A rope is followed from a leaf to its neighbour, or a link from a node to its parent.
     rope: ropes,
     /// A search by ropes is given up, and the ray is finished by the search with a trail.
     fallback: fallbacks,

@@ -36,6 +36,16 @@ pub enum Reflections {
     Staged,
 }
 
+/// Which pixels an invocation renders; ignored by CPU twins.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Threads {
+    /// One.
+    #[default]
+    PerPixel,
+    /// One of each group of pixels that its work-group takes, until none are left.
+    Persistent,
+}
+
 /// Where a kernel reads the scene and the structure from; ignored by CPU twins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Fetch {
@@ -114,6 +124,8 @@ pub struct Method {
     pub intersect: TriangleTest,
     /// Passes of a frame.
     pub reflections: Reflections,
+    /// Pixels of an invocation, in frames of one pass.
+    pub threads: Threads,
     /// A work-group's pixels.
     pub group: Group,
     /// The image is split into so many tiles on each side, which are rendered one after another.

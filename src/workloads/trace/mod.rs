@@ -38,6 +38,7 @@ mod selection;
 pub mod shade;
 mod staged;
 mod structure;
+pub mod subgroup;
 pub mod tracer;
 pub mod traverse;
 pub mod verify;

@@ -1,6 +1,7 @@
 //! Options of `--structure name:key=value,...`: what they take, and what they are about.
 
 use super::algorithm::Agreement;
+use super::method::Threads;
 use super::selection::Selection;
 
 /// An option of an algorithm.
@@ -184,6 +185,9 @@ fn has_own_test(s: &Selection) -> Option<String> {
 }
 
 fn goes_together(s: &Selection) -> Option<String> {
+    if s.method().threads == Threads::Persistent {
+        return Some("persistent threads follow their reflections".to_owned());
+    }
     if s.method().traversal.packets.is_some() {
         return Some(format!("frames of {} have a pass for primary rays and one for all others", s.name()));
     }

@@ -164,10 +164,7 @@ impl<'a> Frame<'a> {
     pub fn follow<C: Count>(&self, traversal: &dyn Traverser, kind: usize, paths: &mut Paths<C>) -> bool {
         let Paths { rays, alive, counters, .. } = paths;
         bits(*alive).for_each(|lane| counters[kind][lane].ray());
-        let triangle_refs = match kind {
-            PRIMARY => traversal.primary_hits(rays, *alive, &mut counters[kind]),
-            _ => traversal.nearest_hits(rays, *alive, &mut counters[kind]),
-        };
+        let triangle_refs = traversal.nearest_hits(rays, *alive, &mut counters[kind]);
         self.follow_hits(traversal, kind, paths, &triangle_refs)
     }
 

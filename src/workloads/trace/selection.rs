@@ -7,7 +7,9 @@ use crate::threads;
 use crate::workloads::trace::algorithm::{Algorithm, Made};
 use crate::workloads::trace::build::gpu::BuildTimes;
 use crate::workloads::trace::intersect::TriangleTest;
-use crate::workloads::trace::method::{Fetch, Group, Method, Pattern, Reflections, ShadowRays, TriangleLayout};
+use crate::workloads::trace::method::{
+    Fetch, Group, Method, Pattern, Reflections, ShadowRays, Threads, TriangleLayout,
+};
 use crate::workloads::trace::options::{Axis, OptionInfo};
 use crate::workloads::trace::registry::algorithms;
 use crate::workloads::trace::structure::Structure;
@@ -172,6 +174,10 @@ impl Selection {
             reflections: match self.value("reflections") {
                 "staged" => Reflections::Staged,
                 _ => Reflections::Fused,
+            },
+            threads: match self.find("loop") {
+                Some("persistent") => Threads::Persistent,
+                _ => Threads::PerPixel,
             },
             group,
             tiles: self.count("tiles").unwrap_or(1),

@@ -310,7 +310,8 @@ fn judge(
     demand(reference.brute_differing, 0.0, "rays of the reference itself differ from brute force");
     let hit_share = if let Agreement::Share(share) = agreement { share } else { HIT_SHARE };
     demand(hits, hit_share, "primary rays hit another triangle or at another distance");
-    if reference.rays.intersect == TriangleTest::Watertight {
+    // A driver's own test may lose rays that run in planes and along edges; those count as hits that differ
+    if reference.rays.intersect == TriangleTest::Watertight && agreement != Agreement::HitsOnly {
         demand(lost, 0.0, "primary rays away from silhouettes lost their hit");
     }
     demand(counters, COUNTER_SHARE, "pixels count other steps or tests than the CPU twin");

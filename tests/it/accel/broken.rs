@@ -5,9 +5,11 @@ use rtbench::scene::Scene;
 use rtbench::workloads::trace::Structure;
 use rtbench::workloads::trace::bih::{Bih, BihNode};
 use rtbench::workloads::trace::brute::Brute;
+use rtbench::workloads::trace::bvh::stackless::LinkedBvh;
 use rtbench::workloads::trace::bvh::{Bvh, BvhNode};
 use rtbench::workloads::trace::grid::Grid;
 use rtbench::workloads::trace::kdtree::{KdNode, KdTree, NO_ROPE, RopeTree};
+use rtbench::workloads::trace::query::SortedTriangles;
 
 pub(super) fn scene() -> Scene {
     scenes::random("good", 400, 1.0, 0.1, 9)
@@ -358,4 +360,44 @@ fn triangles_that_cannot_be_hit_must_not_be_listed() {
     scene.vertices[0].position.x = f32::NAN;
     assert!(good.validate(&scene).is_err());
     build("brute", &scene, 1).validate(&scene).unwrap();
+}
+
+#[test]
+fn in_links_to_parents() {
+    let good: LinkedBvh = build_as("bvh-stackless", &scene());
+    let last = good.links.len() - 1;
+    let damages: &[Damage<LinkedBvh>] = &[
+        ("a link to the root", "is not to their parent", &|t| t.links[last] &= 7 << 28),
+        ("a link to itself", "is not to their parent", &|t| t.links[last] = t.links[last] & 7 << 28 | 2 * last as u32),
+        ("a link to a neighbour", "is not to their parent", &|t| t.links[last] ^= 1),
+        ("a link to a leaf", "is not to their parent", &|t| {
+            t.links[last] = t.links[last] & 7 << 28 | leaf_of(&t.bvh) as u32;
+        }),
+        ("a link behind the last node", "is not to their parent", &|t| t.links[last] |= (1 << 28) - 1),
+        ("another axis", "have the order", &|t| t.links[last] ^= 1 << 28),
+        ("another direction", "have the order", &|t| t.links[last] ^= 4 << 28),
+        ("a bit above the order", "have the order", &|t| t.links[last] ^= 1 << 31),
+        ("a link of the root", "the root has the link", &|t| t.links[0] = 2),
+        ("a link too few", "links for", &|t| {
+            t.links.pop();
+        }),
+        ("a link too many", "links for", &|t| t.links.push(0)),
+        ("a tree that is wrong itself", "depth is", &|t| t.bvh.depth += 1),
+    ];
+    assert_noticed(&good, damages);
+}
+
+#[test]
+fn in_sorted_triangles() {
+    let good: SortedTriangles = build_as("query", &scene());
+    let damages: &[Damage<SortedTriangles>] = &[
+        ("lost", "each once", &|b| {
+            b.triangle_refs.pop();
+        }),
+        ("doubled", "each once", &|b| b.triangle_refs.push(b.triangle_refs[0])),
+        ("another one", "each once", &|b| b.triangle_refs[3] = b.triangle_refs[4]),
+        ("wrong vertices", "has vertices", &|b| b.triangle_refs[3].vertices.swap(0, 1)),
+        ("wrong bounds", "bounds", &|b| b.bounds.max.z = f32::NAN),
+    ];
+    assert_noticed(&good, damages);
 }

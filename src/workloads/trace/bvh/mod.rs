@@ -7,6 +7,7 @@ mod clip;
 pub(crate) mod cover;
 mod layout;
 mod lists;
+pub mod loops;
 pub(in crate::workloads::trace) mod options;
 pub mod packet;
 mod partition;
@@ -15,6 +16,7 @@ mod ploc_passes;
 pub mod spatial;
 mod spatial_bins;
 pub mod stack;
+pub mod stackless;
 pub mod sweep;
 pub(in crate::workloads::trace) mod widened;
 

@@ -1,11 +1,12 @@
 //! BVH, one ray at a time with a private stack, nearer child first. Twin of `kernels/trace/bvh/stack.wgsl`, and of
-//! every kernel with the loops of `kernels/trace/bvh/walk.wgsl`.
+//! every kernel with the loops of `kernels/trace/bvh/walk.wgsl`; other forms of the loops are in [`super::loops`].
 //!
 //! With `cull=off`, boxes are never compared with the nearest hit so far: a ray visits every node that it meets before
 //! its limit, as in a thesis of 2010 (the source `rt2`).
 
 use crate::math::{Ray, ray_box};
 use crate::workloads::trace::algorithm::{Algorithm, Parameter, Parameters, Traversal};
+use crate::workloads::trace::bvh::loops::{self, Form, LOOP};
 use crate::workloads::trace::bvh::widened::{self, Widening};
 use crate::workloads::trace::bvh::{Bvh, BvhNode, KIND, PLOC, TOP_DOWN};
 use crate::workloads::trace::count::Count;
@@ -23,7 +24,7 @@ pub static BVH_STACK: Algorithm = Algorithm {
     paper: "Wald 2007; Wald, Boulos and Shirley 2007; Stich et al. 2009; Aila and Laine 2009",
     builder: &TOP_DOWN,
     traversal: |_| &STACK,
-    options: &[CULL, GROUP],
+    options: &[LOOP, CULL, GROUP],
 };
 
 /// A stack per ray in a BVH of a state-of-the-art builder.
@@ -34,18 +35,16 @@ pub static PLOC_STACK: Algorithm = Algorithm {
     paper: "Meister and Bittner 2018",
     builder: &PLOC,
     traversal: |_| &STACK,
-    options: &[CULL, GROUP],
+    options: &[LOOP, CULL, GROUP],
 };
 
 /// Depth first, nearer child first.
 pub static STACK: Traversal = Traversal {
     kernel: "trace/bvh/stack.wgsl",
     structure: &KIND,
-    parameters,
-    twin: Some(|input| {
-        let bvh: &Bvh = input.structure()?;
-        Ok(input.with(StackSearch::new(&input, InPairs(bvh))))
-    }),
+    parameters: |s| loops::with_form(parameters(s), Form::of(s)),
+    slots: loops::slots,
+    twin: Some(loops::twin),
     leaf_order: true,
     ..Traversal::INDEPENDENT
 };
@@ -66,7 +65,7 @@ pub(in crate::workloads::trace) const CULL: OptionInfo = OptionInfo::new(
 
 /// The parameters without options.
 pub fn defaults() -> Parameters {
-    Parameters::of(&[("CULL", Parameter::Flag(true)), widened::flag(false)])
+    loops::with_form(Parameters::of(&[("CULL", Parameter::Flag(true)), widened::flag(false)]), Form::WhileWhile)
 }
 
 /// What a node leads to, in one word (`kernels/trace/bvh/node.wgsl`): the left child of an inner node, which the right
@@ -179,7 +178,7 @@ pub(in crate::workloads::trace) trait Down: Sync {
     fn walk_to_leaf<C: Count>(&self, ray: &Ray, t: f32, from: u32, stack: &mut Stack, count: &mut C) -> u32;
 }
 
-/// In pairs of boxes (`kernels/trace/bvh/while_while.wgsl`).
+/// In pairs of boxes (`kernels/trace/bvh/pairs.wgsl`).
 pub(in crate::workloads::trace) struct InPairs<'a, P>(pub &'a P);
 
 impl<P: Pairs> Down for InPairs<'_, P> {
@@ -189,38 +188,46 @@ impl<P: Pairs> Down for InPairs<'_, P> {
 
     #[inline(always)]
     fn walk_to_leaf<C: Count>(&self, ray: &Ray, t: f32, from: u32, stack: &mut Stack, count: &mut C) -> u32 {
-        let pairs = self.0;
         let mut reference = from;
         while reference & LEAF == 0 {
-            count.inner();
-            count.box_tests(2);
-            let [left, right] = pairs.children(reference);
-            let (min, max) = pairs.corners(left);
-            let l = ray_box(ray, min, max);
-            let (min, max) = pairs.corners(right);
-            let r = ray_box(ray, min, max);
-            reference = match (overlaps(l, t), overlaps(r, t)) {
-                (true, true) => {
-                    let (near, far) = if r.0 < l.0 { (right, left) } else { (left, right) };
-                    stack.push(pairs.reference(far), l.0.max(r.0));
-                    pairs.reference(near)
-                }
-                (true, false) => pairs.reference(left),
-                (false, true) => pairs.reference(right),
-                (false, false) => stack.pop(t, count),
-            }
+            reference = self.step_down(ray, t, reference, stack, count);
         }
         reference
     }
 }
 
+impl<P: Pairs> InPairs<'_, P> {
+    /// Goes down from an inner node: to its nearer child, or to what the stack has where neither is hit before `t`.
+    #[inline(always)]
+    pub(super) fn step_down<C: Count>(&self, ray: &Ray, t: f32, from: u32, stack: &mut Stack, count: &mut C) -> u32 {
+        let pairs = self.0;
+        count.inner();
+        count.box_tests(2);
+        let [left, right] = pairs.children(from);
+        let (min, max) = pairs.corners(left);
+        let l = ray_box(ray, min, max);
+        let (min, max) = pairs.corners(right);
+        let r = ray_box(ray, min, max);
+        match (overlaps(l, t), overlaps(r, t)) {
+            (true, true) => {
+                let (near, far) = if r.0 < l.0 { (right, left) } else { (left, right) };
+                stack.push(pairs.reference(far), l.0.max(r.0));
+                pairs.reference(near)
+            }
+            (true, false) => pairs.reference(left),
+            (false, true) => pairs.reference(right),
+            (false, false) => stack.pop(t, count),
+        }
+    }
+}
+
 /// See the module.
 pub(in crate::workloads::trace) struct StackSearch<'a, D> {
-    triangles: Triangles<'a>,
-    down: D,
+    pub(super) triangles: Triangles<'a>,
+    pub(super) down: D,
+    pub(super) widening: Widening,
     root: (Vec3A, Vec3A, u32),
     cull: bool,
-    widening: Widening,
 }
 
 impl<'a, D: Down> StackSearch<'a, D> {
@@ -228,7 +235,20 @@ impl<'a, D: Down> StackSearch<'a, D> {
     pub fn new(input: &TwinInput<'a>, down: D) -> Self {
         let root = down.root();
         let (cull, widening) = (input.method.parameters.flag("CULL"), Widening::around(input, (root.0, root.1)));
-        StackSearch { triangles: input.triangles(), down, root, cull, widening }
+        StackSearch { triangles: input.triangles(), down, widening, root, cull }
+    }
+
+    /// The reference at which a ray begins.
+    #[inline(always)]
+    pub(super) fn start(&self, wide: &Ray, limit: f32) -> u32 {
+        let (min, max, root) = self.root;
+        if overlaps(ray_box(wide, min, max), limit) { root } else { EMPTY }
+    }
+
+    /// Boxes are looked at up to this distance.
+    #[inline(always)]
+    pub(super) fn reach(&self, best: &Best, limit: f32) -> f32 {
+        if self.cull { best.t } else { limit }
     }
 }
 
@@ -236,12 +256,10 @@ impl<D: Down> TraverseIndependent for StackSearch<'_, D> {
     fn traverse<const ANY: bool, C: Count>(&self, ray: &Ray, limit: f32, count: &mut C) -> u32 {
         let mut best = Best::before(limit);
         let mut stack = Stack::new();
-        let (min, max, root) = self.root;
         let wide = self.widening.widened(ray);
-        let mut reference = if overlaps(ray_box(&wide, min, max), limit) { root } else { EMPTY };
+        let mut reference = self.start(&wide, limit);
         loop {
-            let reach = if self.cull { best.t } else { limit };
-            reference = self.down.walk_to_leaf(&wide, reach, reference, &mut stack, count);
+            reference = self.down.walk_to_leaf(&wide, self.reach(&best, limit), reference, &mut stack, count);
             if reference == EMPTY {
                 return best.triangle_ref;
             }
@@ -250,8 +268,7 @@ impl<D: Down> TraverseIndependent for StackSearch<'_, D> {
             if self.triangles.test::<ANY, C>(ray, first, triangle_refs, &mut best, count) {
                 return best.triangle_ref;
             }
-            let reach = if self.cull { best.t } else { limit };
-            reference = stack.pop(reach, count);
+            reference = stack.pop(self.reach(&best, limit), count);
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::math;
 use crate::workloads::trace::backend::{AMBIENT_RAYS, Config};
 use crate::workloads::trace::intersect::{TriangleTest, moller_trumbore};
-use crate::workloads::trace::method::{Pattern, ShadowRays};
+use crate::workloads::trace::method::{Pattern, ShadowRays, Threads};
 use crate::workloads::trace::{Axis, COMMON_OPTIONS, Method, OptionInfo, Parameter, Selection, algorithms, count};
 use std::sync::LazyLock;
 
@@ -17,6 +17,9 @@ const COUNT_OFF: &str = "generated/count_off.wgsl";
 
 /// The binding of the driver's structure.
 pub(super) const DRIVER_TREE: u32 = 14;
+
+/// The binding of the number of groups of pixels that persistent threads have taken.
+pub(super) const TAKEN: u32 = 15;
 
 /// Every file that a kernel can include: those of `kernels/`, and generated ones.
 pub fn files() -> &'static [KernelFile] {
@@ -31,7 +34,7 @@ pub fn files() -> &'static [KernelFile] {
 /// Which entry file, and how it is specialised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Entry {
-    /// `trace/render.wgsl`.
+    /// `trace/render.wgsl`, or `trace/persistent.wgsl`.
     Render {
         /// Ray configuration.
         config: Config,
@@ -152,7 +155,10 @@ impl Kernel {
     /// A message with file and line for an include that does not exist (a mistake in `kernels/`).
     pub fn assemble(&self) -> Result<Source, String> {
         let (entry, counting) = match self.entry {
-            Entry::Render { counting, .. } => ("trace/render.wgsl", counting),
+            Entry::Render { counting, .. } => match self.method.threads {
+                Threads::PerPixel => ("trace/render.wgsl", counting),
+                Threads::Persistent => ("trace/persistent.wgsl", counting),
+            },
             Entry::Staged { counting, pass: StagedPass::Primary, .. } => ("trace/staged/primary.wgsl", counting),
             Entry::Staged { counting, .. } => ("trace/staged/bounce.wgsl", counting),
             Entry::Packets { counting, pass: PacketPass::Hits, .. } => ("trace/subgroup/hits.wgsl", counting),
@@ -216,6 +222,9 @@ impl Kernel {
         }
         if self.leaf_order {
             layout.push(Binding::new(13, input(Texel::Bytes16)));
+        }
+        if matches!(self.entry, Entry::Render { .. }) && self.method.threads == Threads::Persistent {
+            layout.push(Binding::new(TAKEN, BindingKind::ReadWrite));
         }
         if let Entry::Staged { pass, .. } = self.entry {
             if pass != StagedPass::LastBounce {

@@ -9,7 +9,7 @@ mod shared;
 mod upload;
 
 pub use caster::{Cast, HIT_BYTES, RayCaster};
-pub use shared::{CastJob, FrameUniform, WaitingPath};
+pub use shared::{CastJob, FrameUniform, LeafTriangle, WaitingPath};
 
 use crate::device::{DeviceInfo, VulkanDevice};
 use crate::error::Result;

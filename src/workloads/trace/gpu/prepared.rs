@@ -21,6 +21,9 @@ use std::time::Duration;
 /// Rays per dispatch of [`Prepared::cast`].
 const TRACE_RAYS: usize = 1 << 20;
 
+/// Invocations of a subgroup that trace a packet together.
+const CLUSTER: u64 = 8;
+
 pub(super) struct GpuPrepared<'a> {
     pub(super) device: &'a VulkanDevice,
     pub(super) scene: &'a Scene,
@@ -52,6 +55,13 @@ impl<'a> GpuPrepared<'a> {
                 "{} needs what this device lacks: {}",
                 traversal.kernel,
                 missing.join(", ")
+            )));
+        }
+        let smallest = device.info().limits.get("subgroup_min_size").copied().unwrap_or(0);
+        if traversal.packets.is_some() && smallest < CLUSTER {
+            return Err(Error::unsupported(format!(
+                "{} needs subgroups of at least {CLUSTER} invocations, this device may take {smallest}",
+                traversal.kernel
             )));
         }
         Ok(GpuPrepared {

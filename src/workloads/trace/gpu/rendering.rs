@@ -1,6 +1,6 @@
 //! Frames of a ray configuration on a device: the kernels of their passes, the uniforms, and the lists between passes.
 
-use super::kernels::{Entry, PacketPass, StagedPass};
+use super::kernels::{Entry, PacketPass, StagedPass, TAKEN};
 use super::prepared::GpuPrepared;
 use super::shared::{FrameUniform, LENGTH, WaitingPath};
 use crate::camera::View;
@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::scene::Light;
 use crate::workloads::trace::Method;
 use crate::workloads::trace::backend::*;
-use crate::workloads::trace::method::{Group, Reflections};
+use crate::workloads::trace::method::{Group, Reflections, Threads};
 use std::sync::Arc;
 
 /// The one stage of a fused frame: rays are generated, traced and shaded by one kernel.
@@ -53,7 +53,13 @@ pub(super) struct Rendering<'p> {
     stages: &'static [Stage],
     /// Pixels of a work-group of each pass.
     shapes: Vec<Group>,
+    /// Most work-groups of a dispatch, where each takes pixels until none are left.
+    persistent: Option<u32>,
 }
+
+/// Work-groups of persistent threads on a GPU: more than any has resident at a time. Those that begin late find no
+/// pixels left.
+const PERSISTENT_GROUPS: u32 = 4096;
 
 /// The stages of a frame.
 pub(super) fn stages(method: Method, config: Config) -> &'static [Stage] {
@@ -98,9 +104,19 @@ impl GpuPrepared<'_> {
         };
         let inputs = self.frame_inputs(views, size, parts)?;
         self.check_groups(&inputs, &shapes)?;
+        let is_persistent = self.method.threads == Threads::Persistent;
+        // One count for each part, which is dispatched once
+        let taken = is_persistent
+            .then(|| self.device.zeroed("the groups that are taken", 4 * inputs.extents.len() as u64))
+            .transpose()?;
+        let persistent = is_persistent.then(|| match self.device.info().software_threads() {
+            0 => PERSISTENT_GROUPS,
+            threads => threads,
+        });
         let lists = (0..listed).map(|_| self.list(inputs.extents.len(), parts)).collect::<Result<Vec<_>>>()?;
         let bindings = pipelines.iter().enumerate().map(|(pass, pipeline)| {
             let mut others: Vec<(u32, Resource)> = vec![(5, (&inputs.lights).into()), (8, output.into())];
+            others.extend(taken.as_ref().map(|taken| (TAKEN, taken.into())));
             if let Some(List { lengths, paths }) = lists.get(pass) {
                 others.extend([(9, lengths.into()), (10, paths.into())]);
             }
@@ -109,7 +125,7 @@ impl GpuPrepared<'_> {
             }
             self.render_bindings(pipeline, &inputs.uniforms, &others)
         });
-        Ok(Rendering { pipelines, bindings: bindings.collect(), lists, inputs, stages, shapes })
+        Ok(Rendering { pipelines, bindings: bindings.collect(), lists, inputs, stages, shapes, persistent })
     }
 
     /// A list for parts of an image, of which `uploaded` are uploaded for all views.
@@ -238,7 +254,10 @@ impl Rendering<'_> {
                 let groups = match pass.checked_sub(1).and_then(|before| self.lists.get(before)) {
                     None => {
                         let (x, y) = groups_of(extent, self.shapes[pass]);
-                        Groups::Fixed(x, y, 1)
+                        match self.persistent {
+                            Some(most) => Groups::Fixed((x * y).min(most), 1, 1),
+                            None => Groups::Fixed(x, y, 1),
+                        }
                     }
                     Some(list) => Groups::Indirect {
                         buffer: &list.lengths,

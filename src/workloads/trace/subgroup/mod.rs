@@ -3,8 +3,7 @@
 mod packet;
 
 use super::algorithm::{Algorithm, Builder, Parameter, Parameters, Traversal};
-use super::bvh;
-use super::bvh::stack::{CULL, parameters};
+use super::bvh::{self, widened};
 use super::cpu::Twin;
 use super::method::Group;
 use super::options::{Axis, Kind, OptionInfo};
@@ -26,20 +25,31 @@ pub static BVH_SUBGROUP: Algorithm = Algorithm {
         4 => &PACKETS4,
         _ => &PACKETS8,
     },
-    options: &[WIDTH, RAYS, CULL],
+    options: &[WIDTH, RAYS],
 };
 
 static BUILDER: Builder = Builder {
-    name: "bvh-subgroup",
-    options: bvh::options::OPTIONS,
-    parallel: true,
     purpose: |s| match width_of(s) {
         2 => "2",
         4 => "4",
         _ => "8",
     },
-    build: |s, scene| wide::build(s, scene, width_of(s) as usize),
-    estimate: None,
+    options: &OPTIONS,
+    ..wide::builder("bvh-subgroup", |s, scene| wide::build(s, scene, width_of(s) as usize))
+};
+
+/// Those of the BVH, with leaves that fill the lanes.
+const OPTIONS: [OptionInfo; bvh::options::OPTIONS.len()] = {
+    let mut options = [bvh::options::OPTIONS[0]; bvh::options::OPTIONS.len()];
+    let mut i = 0;
+    while i < options.len() {
+        options[i] = bvh::options::OPTIONS[i];
+        if let b"max_leaf" = options[i].key.as_bytes() {
+            options[i].default = "8";
+        }
+        i += 1;
+    }
+    options
 };
 
 const WIDTH: OptionInfo = OptionInfo::new(
@@ -50,8 +60,13 @@ const WIDTH: OptionInfo = OptionInfo::new(
     Kind::Word(&["2", "4", "8"]),
 );
 
-const RAYS: OptionInfo =
-    OptionInfo::new(Axis::Traversal, "rays", "8", "primary rays of each of eight lanes", Kind::Word(&["1", "2", "4", "8"]));
+const RAYS: OptionInfo = OptionInfo::new(
+    Axis::Traversal,
+    "rays",
+    "8",
+    "primary rays of each of eight lanes",
+    Kind::Word(&["1", "2", "4", "8"]),
+);
 
 const fn packets(structure: &'static StructureKind) -> Traversal {
     Traversal {
@@ -59,7 +74,8 @@ const fn packets(structure: &'static StructureKind) -> Traversal {
         structure,
         parameters: |s| {
             let word = |key: &str| Parameter::Word(s.size(key) as u32);
-            parameters(s).and("WIDTH", word("width")).and("RAYS", word("rays"))
+            let cull = ("CULL", Parameter::Flag(true));
+            Parameters::of(&[cull, widened::parameter(s), ("WIDTH", word("width")), ("RAYS", word("rays"))])
         },
         leaf_order: true,
         packets: Some(group),
@@ -69,9 +85,9 @@ const fn packets(structure: &'static StructureKind) -> Traversal {
     }
 }
 
-static PACKETS2: Traversal = packets(wide::kind(2));
-static PACKETS4: Traversal = packets(wide::kind(4));
-static PACKETS8: Traversal = packets(wide::kind(8));
+static PACKETS2: Traversal = packets(&wide::PAIRS);
+static PACKETS4: Traversal = packets(&wide::FOUR);
+static PACKETS8: Traversal = packets(&wide::EIGHT);
 
 const TWIN: Twin = |input| {
     let tree: &Wide = input.structure()?;

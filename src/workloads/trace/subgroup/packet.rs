@@ -77,9 +77,9 @@ impl<'a> Packets<'a> {
 
     fn test_children<C: Count>(&self, node: u32, rows: u32, packet: &mut Packet<C>) -> Children {
         let mut children = [(NONE, EMPTY); CLUSTER];
-        let slots = self.tree.node(node).iter().filter(|slot| !slot.is_empty());
-        for (number, slot) in slots.enumerate() {
-            let (min, max) = self.tree.planes.corners(slot);
+        let slots = self.tree.node(node).iter().enumerate().filter(|(_, slot)| !slot.is_empty());
+        for (number, slot) in slots {
+            let (min, max) = self.tree.planes.corners(slot.min, slot.max);
             let interval = Self::packet_box(packet, min, max);
             if !overlaps(interval, packet.farthest) {
                 continue;

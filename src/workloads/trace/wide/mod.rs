@@ -22,9 +22,9 @@ use crate::error::Result;
 use crate::scene::Scene;
 use std::sync::Arc;
 
-static PAIRS: StructureKind = wide("quantised BVH");
-static FOUR: StructureKind = wide("BVH4");
-static EIGHT: StructureKind = wide("BVH8");
+pub(in crate::workloads::trace) static PAIRS: StructureKind = wide("quantised BVH");
+pub(in crate::workloads::trace) static FOUR: StructureKind = wide("BVH4");
+pub(in crate::workloads::trace) static EIGHT: StructureKind = wide("BVH8");
 
 const fn wide(name: &'static str) -> StructureKind {
     StructureKind { name, node_texel: Texel::Bytes16, has_cells: false }
@@ -44,7 +44,10 @@ static QUANTISED: Builder = builder("bvh-quantised", |s, scene| build(s, scene, 
 static BVH4_BUILDER: Builder = Builder { purpose, ..builder("bvh4", |s, scene| build(s, scene, 4)) };
 static BVH8_BUILDER: Builder = Builder { purpose, ..builder("bvh8", |s, scene| build(s, scene, 8)) };
 
-const fn builder(name: &'static str, build: fn(&Selection, &Scene) -> Result<Made>) -> Builder {
+pub(in crate::workloads::trace) const fn builder(
+    name: &'static str,
+    build: fn(&Selection, &Scene) -> Result<Made>,
+) -> Builder {
     Builder {
         name,
         options: bvh::options::OPTIONS,
@@ -66,7 +69,7 @@ fn has_octants(s: &Selection) -> bool {
 }
 
 /// Builds the BVH that the options describe, and collapses it.
-fn build(s: &Selection, scene: &Scene, width: usize) -> Result<Made> {
+pub(in crate::workloads::trace) fn build(s: &Selection, scene: &Scene, width: usize) -> Result<Made> {
     let (bvh, note) = bvh::options::build(s, scene)?;
     Ok(Made { structure: Arc::new(collapse::collapse(bvh, width, has_octants(s))), note })
 }

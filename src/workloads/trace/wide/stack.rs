@@ -112,7 +112,7 @@ fn insert(reference: u32, t: f32, base: usize, stack: &mut Stack) {
 }
 
 /// Nodes of several children, in order of distance.
-struct Sorted<'a>(&'a Wide);
+pub(in crate::workloads::trace) struct Sorted<'a>(pub &'a Wide);
 
 impl Down for Sorted<'_> {
     fn root(&self) -> (Vec3A, Vec3A, u32) {
