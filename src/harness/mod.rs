@@ -7,6 +7,7 @@ pub mod environment;
 mod failure;
 pub mod measure;
 mod order;
+mod outcome;
 mod plan;
 pub mod preset;
 pub mod previous;

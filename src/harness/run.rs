@@ -12,11 +12,13 @@ use crate::device::{Device, DeviceInfo};
 use crate::error::{Error, Result};
 use crate::record::journal::Record;
 use crate::record::journal::{self, Journal, JournalWriter};
-use crate::record::row::{Artifact, Key, Row, SCHEMA, Status};
+use crate::record::row::{Artifact, Key, Row, SCHEMA};
 use crate::record::run::{DeviceRecord, End, Provenance, Resumed};
 use std::cell::RefCell;
 use std::collections::{HashSet, VecDeque};
 use std::path::Path;
+
+pub use super::outcome::Outcome;
 
 /// Artifacts are built until this many bytes wait to be brought to the device together.
 const BATCH_BYTES: u64 = 512 << 20;
@@ -49,20 +51,6 @@ pub struct Job<'a> {
     pub interrupted: &'a dyn Fn() -> bool,
     /// Receives progress.
     pub watch: &'a mut dyn FnMut(Event),
-}
-
-/// What a run has measured until its end.
-#[derive(Debug)]
-pub struct Outcome {
-    /// Everything that was recorded.
-    pub journal: Journal,
-}
-
-impl Outcome {
-    /// Number of rows of a status.
-    pub fn count(&self, status: Status) -> usize {
-        self.journal.rows.iter().filter(|row| row.status == status).count()
-    }
 }
 
 /// Runs a plan. Also after an error, the journal holds every row measured until then, and the files derived from it are
@@ -260,9 +248,7 @@ impl<'a> Runner<'a, '_> {
         let built = self.build_on(&devices, input, groups);
         self.devices = devices.into_iter().map(Some).collect();
         let (batch, lost) = built?;
-        if let Some(lost) = lost {
-            self.devices[lost] = None;
-        }
+        lost.into_iter().for_each(|lost| self.devices[lost] = None);
         Ok(batch)
     }
 

@@ -1,5 +1,5 @@
-// The boxes of one level of inner nodes. A node whose last child gets its box here is put on the list of the next level.
-// Twin: src/workloads/trace/build/lbvh.rs.
+// The boxes of one level of inner nodes. A node whose last child gets its box here is put on the list of the next
+// level. Twin: src/workloads/trace/build/lbvh.rs.
 
 //!include trace/build/refit_node.wgsl
 

@@ -3,7 +3,7 @@
 //!include trace/build/lists.wgsl
 
 @group(0) @binding(1) var<storage, read> list: array<u32>;
-@group(0) @binding(2) var<storage, read_write> heights: array<u32>; // levels of inner nodes from the i-th kept node down
+@group(0) @binding(2) var<storage, read_write> heights: array<u32>; // of the i-th kept node
 @group(0) @binding(8) var<storage, read> kept: array<u32>;
 
 fn box_of(node: u32) -> Box {

@@ -1,5 +1,5 @@
-// The boxes of the few inner nodes above all levels that have passes of their own: one invocation goes up from each node
-// of the last list. Twin: src/workloads/trace/build/lbvh.rs.
+// The boxes of the few inner nodes above all levels that have passes of their own: one invocation goes up from each
+// node of the last list. Twin: src/workloads/trace/build/lbvh.rs.
 
 //!include trace/build/refit_node.wgsl
 

@@ -2,8 +2,8 @@
 //! `kernels/trace/build/{list,nodes,leaves,refit,top}.wgsl`.
 //!
 //! T. Karras: Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees, 2012. Ours: boxes go up level
-//! by level instead of by atomic counters alone, since a pass of a device is sure to see only what earlier passes wrote;
-//! and the children of the k-th inner node that is no part of a leaf are the k-th pair of nodes.
+//! by level instead of by atomic counters alone, since a pass of a device is sure to see only what earlier passes
+//! wrote; and the children of the k-th inner node that is no part of a leaf are the k-th pair of nodes.
 
 use super::Input;
 use super::codes::Sorted;

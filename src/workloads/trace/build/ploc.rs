@@ -2,10 +2,10 @@
 //! pass those merge that are each other's best partner within `radius` places. Twin of
 //! `kernels/trace/build/{clusters,search,choose,merge,descend}.wgsl`.
 //!
-//! D. Meister and J. Bittner: Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy Construction, 2018. Ours:
-//! of equally good partners the one whose place differs in lower bits is taken, so that equal boxes merge in pairs; and
-//! after a pass in which less than an eighth of the clusters merged, as where boxes lie inside each other, all merge in
-//! pairs. So there are never more than some hundred passes, and no tree is deeper than that.
+//! D. Meister and J. Bittner: Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy Construction, 2018.
+//! Ours: of equally good partners the one whose place differs in lower bits is taken, so that equal boxes merge in
+//! pairs; and after a pass in which less than an eighth of the clusters merged, as where boxes lie inside each other,
+//! all merge in pairs. So there are never more than some hundred passes, and no tree is deeper than that.
 
 use super::Input;
 use super::codes::Sorted;
