@@ -355,11 +355,9 @@ impl Differences {
         found: &Answers,
         (exact, agreement): (bool, Agreement),
     ) {
-        // Where hits are compared by distance, of two triangles at the same distance either may be hit
-        let is_other = |a: u32, b: u32| match agreement {
-            Agreement::HitsOnly => (a == MISS) != (b == MISS),
-            Agreement::Exact | Agreement::Share(_) => a != b,
-        };
+        // By hits only, of two triangles at the same distance either may be hit
+        let hits_only = agreement == Agreement::HitsOnly;
+        let is_other = |a: u32, b: u32| if hits_only { (a == MISS) != (b == MISS) } else { a != b };
         for (index, differs) in self.hits.iter_mut().enumerate() {
             let right = expected.pixels[index].triangle;
             let pixels = [timed.get(index), found.pixels.get(index)];
