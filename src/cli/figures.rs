@@ -10,8 +10,8 @@ use std::path::PathBuf;
 /// Draw the figures of the thesis (or another source) from recorded runs, as SVG
 ///
 /// The thesis has figures 5.1 to 5.4 and bars of frame times, rt2 has 4.4 to 4.6 and bars of steps per ray, spheres has
-/// bars of times and speed-ups, and how both scale, structures has scatter plots of rays per second. Without a run, the published numbers are drawn. A figure without
-/// data is not drawn, and named.
+/// bars of times and speed-ups, and how both scale, structures has scatter plots of rays per second. Without a run, the
+/// published numbers are drawn. A figure without data is not drawn, and named.
 #[derive(Args, Debug)]
 pub struct Arguments {
     #[command(flatten)]

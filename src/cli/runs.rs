@@ -15,7 +15,8 @@ pub struct RunArguments {
     /// Folders of recorded runs, as `rtbench sweep` or `rtbench spheres` writes them; none: the published numbers
     #[arg(value_name = "RUN")]
     runs: Vec<PathBuf>,
-    /// Source of tables, figures and claims: thesis, rt2, spheres, splat, structures [default: every source that the runs fit]
+    /// Source of tables, figures and claims: thesis, rt2, spheres, splat, structures [default: every source that the
+    /// runs fit]
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     source: Vec<String>,
 }

@@ -2,8 +2,9 @@
 //! done here, in text. A line map turns naga's lines back into files and lines.
 //!
 //! A line `//!include FILE` takes a file once; a line `//!slot NAME` takes the file that the caller chose for this
-//! name. Lines between `//!repeat COUNT NAME` and `//!end` are taken as often as the constant COUNT says, with 0, 1, 2 ..
-//! in place of `{NAME}`: drivers keep arrays in registers only where all indices are constants. The constants go before everything else but lines that begin with `enable`, which WGSL wants first.
+//! name. Lines between `//!repeat COUNT NAME` and `//!end` are taken as often as the constant COUNT says, with 0, 1,
+//! 2 .. in place of `{NAME}`: drivers keep arrays in registers only where all indices are constants. The constants go
+//! before everything else but lines that begin with `enable`, which WGSL wants first.
 
 use super::tokens::tokens;
 use std::fmt::Write;

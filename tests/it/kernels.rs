@@ -43,7 +43,7 @@ fn check(source: &Source) -> Result<naga::Module, String> {
 /// Kernels of a method.
 fn variants(method: &Method) -> usize {
     let staged = if method.is_staged(2) { 4 } else { 0 };
-    let packets = if method.traversal.packets.is_some() { 10 } else { 0 };
+    let packets = if method.traversal.packets.is_some() { 2 } else { 0 };
     (12 + staged + packets) * 4 * if method.traversal.leaf_order { 2 } else { 1 }
 }
 

@@ -8,7 +8,7 @@ use crate::scene::Scene;
 use crate::workloads::trace::backend::*;
 use crate::workloads::trace::count::{Count, CountOff};
 use crate::workloads::trace::given::{TraceRay, trace_group};
-use crate::workloads::trace::method::{Group, Reflections};
+use crate::workloads::trace::method::Group;
 use crate::workloads::trace::path::Frame;
 use crate::workloads::trace::render::render_group;
 use crate::workloads::trace::staged::{Waiting, bounce_group, primary_group};
@@ -121,13 +121,13 @@ impl<'a> CpuPrepared<'a> {
         out: &mut [P],
         convert: impl Fn(CountedPixel) -> P + Sync,
     ) {
-        self.device.pool().install(|| match self.method.reflections {
-            Reflections::Fused => {
+        self.device.pool().install(|| match self.method.is_staged(frame.config.bounces()) {
+            false => {
                 self.groups(frame, tile, out, |corner, pixels| {
                     render_group::<C>(frame, &*self.traversal, corner, |x, y, p| pixels.set(x, y, convert(p)));
                 });
             }
-            Reflections::Staged => self.staged::<C, P>(frame, tile, out, &convert),
+            true => self.staged::<C, P>(frame, tile, out, &convert),
         });
     }
 

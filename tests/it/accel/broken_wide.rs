@@ -111,7 +111,9 @@ fn in_a_cwbvh() {
         };
         let (node, place) = find(&|child| matches!(child, CwChild::Node(_)), 1);
         let (leaf_node, leaf) = find(&|child| matches!(child, CwChild::Leaf(_, 1)), 0);
-        let empty = (0..8).find(|&place| good.nodes.last().unwrap().child(place).is_none());
+        let places = (0..good.nodes.len()).flat_map(|node| (0..8).map(move |place| (node, place)));
+        let (gap_node, gap) =
+            places.into_iter().find(|&(node, place)| good.nodes[node].child(place).is_none()).unwrap();
         let grow = |node: &mut CwNode, place: usize| {
             node.planes.iter_mut().for_each(|[min, max]| (min[place], max[place]) = (0, 255));
         };
@@ -146,9 +148,7 @@ fn in_a_cwbvh() {
             ("lost triangle", "", &|t| t.triangle_refs[1] = t.triangle_refs[0]),
             ("wrong vertices", "has vertices", &|t| t.triangle_refs[3].vertices.swap(0, 1)),
             ("wrong depth", "depth is", &|t| t.depth += 1),
-            ("box of nothing", "is empty, but has a box", &|t| {
-                t.nodes.last_mut().unwrap().planes[0][1][empty.unwrap()] = 1;
-            }),
+            ("box of nothing", "is empty, but has a box", &|t| t.nodes[gap_node].planes[0][1][gap] = 1),
         ];
         assert_noticed(&good, damages);
     }

@@ -112,7 +112,7 @@ fn cost(bvh: &Bvh) -> f64 {
 }
 
 /// Trees without reinsertion, one triangle a leaf: at most 10 % above obvhs's at the same search distance, in scenes
-/// whose triangles are of about one size. Where they are not, obvhs gains by Morton codes of 21 bits an axis.
+/// whose triangles are of about one size.
 #[test]
 fn clustering_is_as_good_as_that_of_obvhs() {
     for name in ["scan", "terrain"] {

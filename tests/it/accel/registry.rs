@@ -197,7 +197,8 @@ fn what_it_does_not_know_it_names_with_what_there_is() {
         (
             "octree",
             "no structure 'octree'",
-            "grid, kdtree, bvh, bvh-stack, ploc-stack, bih, grid-coop, grid-packet, brute",
+            "grid, kdtree, bvh, bvh-stack, ploc-stack, bvh-quantised, bvh4, bvh8, cwbvh, bvh-subgroup, bvh-stackless, bih, \
+             grid-coop, grid-packet, query, brute",
         ),
         ("", "no structure ''", "grid"),
         ("bvh:depth=3", "no option 'depth'", "bins, max_leaf"),

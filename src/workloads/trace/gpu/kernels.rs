@@ -313,13 +313,21 @@ pub fn methods() -> Vec<Method> {
     methods
 }
 
+/// The passes of a frame of packets. That of hits is the same for all ray configurations.
+pub fn packet_passes(config: Config, counting: bool) -> [Entry; 2] {
+    [
+        Entry::Packets { config: Config::P, counting, pass: PacketPass::Hits },
+        Entry::Packets { config, counting, pass: PacketPass::Shade },
+    ]
+}
+
 /// Every entry file that a method uses, with every set of its constants.
 fn entries(method: Method) -> Vec<Entry> {
     let mut entries: Vec<Entry> = [false, true].map(|any_hit| Entry::Trace { any_hit }).to_vec();
     for config in Config::ALL {
         if method.traversal.packets.is_some() {
-            let of = |pass| [false, true].map(|counting| Entry::Packets { config, counting, pass });
-            entries.extend([PacketPass::Hits, PacketPass::Shade].into_iter().flat_map(of));
+            let passes = [false, true].map(|counting| packet_passes(config, counting)).concat();
+            entries.extend(passes.into_iter().filter(|entry| !entries.contains(entry)).collect::<Vec<_>>());
         } else if method.is_staged(config.bounces()) {
             let passes = StagedPass::all(config).into_iter();
             let of = |pass| [false, true].map(|counting| Entry::Staged { config, counting, pass });

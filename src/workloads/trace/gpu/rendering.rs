@@ -1,6 +1,6 @@
 //! Frames of a ray configuration on a device: the kernels of their passes, the uniforms, and the lists between passes.
 
-use super::kernels::{Entry, PacketPass, StagedPass, TAKEN};
+use super::kernels::{Entry, PacketPass, StagedPass, TAKEN, packet_passes};
 use super::prepared::GpuPrepared;
 use super::shared::{FrameUniform, LENGTH, WaitingPath};
 use crate::camera::View;
@@ -75,7 +75,7 @@ pub(super) fn stages(method: Method, config: Config) -> &'static [Stage] {
 /// The kernels of a frame's passes, in their order.
 pub(super) fn entries_of(method: Method, config: Config, counting: bool) -> Vec<Entry> {
     if method.traversal.packets.is_some() {
-        [PacketPass::Hits, PacketPass::Shade].map(|pass| Entry::Packets { config, counting, pass }).into()
+        packet_passes(config, counting).into()
     } else if method.is_staged(config.bounces()) {
         StagedPass::all(config).into_iter().map(|pass| Entry::Staged { config, counting, pass }).collect()
     } else {
