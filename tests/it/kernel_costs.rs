@@ -134,6 +134,7 @@ fn no_registered_algorithm_and_no_kernel_file_is_left_out() {
     let optional = [
         "trace/bvh/if_if.wgsl",
         "trace/bvh/speculative.wgsl",
+        "trace/bvh/stackless/trail.wgsl",
         "trace/persistent.wgsl",
         "trace/triangles_leaf_order.wgsl",
         "trace/subgroup/moller_trumbore.wgsl",

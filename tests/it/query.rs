@@ -58,7 +58,8 @@ fn hits_are_those_of_a_twin() {
         let rays = |pixels: &[CountedPixel], kind: usize| -> u32 { pixels.iter().map(|p| p.counters[kind].rays).sum() };
         for kind in 0..5 {
             let (a, b) = (rays(&expected, kind), rays(&found, kind));
-            assert!(a.abs_diff(b) * 100 <= a, "{config:?}: {b} rays of type {kind} instead of {a}");
+            // Of triangles at one distance the driver may take another one, which may not reflect
+            assert!(a.abs_diff(b) * 20 <= a, "{config:?}: {b} rays of type {kind} instead of {a}");
         }
     }
 }

@@ -368,7 +368,9 @@ fn in_links_to_parents() {
     let last = good.links.len() - 1;
     let damages: &[Damage<LinkedBvh>] = &[
         ("a link to the root", "is not to their parent", &|t| t.links[last] &= 7 << 28),
-        ("a link to itself", "is not to their parent", &|t| t.links[last] = t.links[last] & 7 << 28 | 2 * last as u32),
+        ("a link to itself", "is not to their parent", &|t| {
+            t.links[last] = (t.links[last] & 7 << 28) | (2 * last as u32)
+        }),
         ("a link to a neighbour", "is not to their parent", &|t| t.links[last] ^= 1),
         ("a link to a leaf", "is not to their parent", &|t| {
             t.links[last] = t.links[last] & 7 << 28 | leaf_of(&t.bvh) as u32;

@@ -53,7 +53,7 @@ pub(super) fn encode(source: &impl Source, root: u32, bounds: Aabb) -> Cwbvh {
             match below {
                 Below::Node(next) => {
                     node.inner |= 1 << place;
-                    node.meta[place] = 1 << 5 | INNER + place as u8;
+                    node.meta[place] = (1 << 5) | (INNER + place as u8);
                     waiting.push((next, tree.nodes.len(), level + 1));
                     tree.nodes.push(CwNode::EMPTY);
                 }

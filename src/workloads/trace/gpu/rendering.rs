@@ -1,6 +1,6 @@
 //! Frames of a ray configuration on a device: the kernels of their passes, the uniforms, and the lists between passes.
 
-use super::kernels::{Entry, PacketPass, StagedPass, TAKEN, packet_passes};
+use super::kernels::{Entry, StagedPass, TAKEN, packet_passes};
 use super::prepared::GpuPrepared;
 use super::shared::{FrameUniform, LENGTH, WaitingPath};
 use crate::camera::View;
