@@ -31,8 +31,8 @@ fn signed(word: u32) -> f32 {
 }
 
 /// A vector of unit length, uniform over the sphere, after G. Marsaglia, "Choosing a Point from the Surface of a
-/// Sphere" (1972). `path` and `bounce` count the vectors of a seed in two ways, such as hits along a path, or samples of
-/// a pixel.
+/// Sphere" (1972). `path` and `bounce` count the vectors of a seed in two ways, such as hits along a path, or samples
+/// of a pixel.
 pub fn unit_vector(seed: u32, path: u32, bounce: u32) -> Vec3A {
     for draw in 0..DRAWS {
         let [x, y, z, w] = pcg4d([seed, path, bounce, draw]).map(signed);

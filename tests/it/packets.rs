@@ -141,9 +141,15 @@ fn triangles_in_leaf_order_are_counted() {
     let selection = |text: &str| Selection::parse(text).unwrap();
     let built = selection("bvh-stack").build(&scene, 1).unwrap();
     let structure = &*built.structure;
-    let bytes = |text: &str| gpu.prepare(&scene, structure, selection(text).method()).unwrap().allocated().1;
-    let more = bytes("bvh-stack:triangles=leaf-order") - bytes("bvh-stack:triangles=indexed");
-    assert_eq!(more, 48 * structure.triangle_refs().len() as u64);
+    let bytes = |text: &str| {
+        let prepared = gpu.prepare(&scene, structure, selection(text).method()).unwrap();
+        let metrics = prepared.artifact_metrics();
+        let copy = metrics.iter().find(|metric| metric.name == "leaf_order_bytes").and_then(|m| m.value.integer());
+        (prepared.allocated().1, copy)
+    };
+    let (leaf_order, indexed) = (bytes("bvh-stack:triangles=leaf-order"), bytes("bvh-stack:triangles=indexed"));
+    assert_eq!(leaf_order, (indexed.0, Some(48 * structure.triangle_refs().len() as u64)));
+    assert_eq!(indexed.1, None);
     let refused = Selection::parse("grid:triangles=leaf-order").unwrap_err().to_string();
     assert!(refused.contains("triangles has no effect"), "{refused}");
 }

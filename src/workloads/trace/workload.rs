@@ -254,7 +254,7 @@ impl Workload for Trace {
     }
 
     fn machine_metrics(&self) -> &'static [&'static str] {
-        &["build_threads", "dispatches"]
+        &["build_threads", "dispatches", "leaf_order_bytes"]
     }
 
     fn derived(&self, row: &Row, frames: Option<&FrameStatistics>) -> Vec<Metric> {

@@ -213,7 +213,10 @@ impl Prepared for GpuPrepared<'_> {
         let ms = |time: Duration| time.as_secs_f64() * 1e3;
         let driver_tree = self.uploaded.driver_tree.as_ref();
         let of_driver = driver_tree.map(|tree| Metric::new("driver_build_ms", ms(tree.build_time())));
-        of_driver.into_iter().chain([Metric::new("upload_ms", ms(self.uploaded.structure_time))]).collect()
+        let leaf_order = Some(self.uploaded.leaf_order_bytes).filter(|&bytes| bytes > 0);
+        let leaf_order = leaf_order.map(|bytes| Metric::new("leaf_order_bytes", bytes));
+        let upload = Metric::new("upload_ms", ms(self.uploaded.structure_time));
+        of_driver.into_iter().chain(leaf_order).chain([upload]).collect()
     }
 
     fn allocated(&self) -> (u64, u64) {

@@ -27,8 +27,10 @@ pub(super) struct Uploaded {
     pub driver_tree: Option<AccelerationStructure>,
     /// Bytes of vertices, materials and the triangles' materials.
     pub geometry_bytes: u64,
-    /// Bytes of nodes (or cells), of triangle references and of corners in their order.
+    /// Bytes of nodes (or cells) and triangle references.
     pub structure_bytes: u64,
+    /// Bytes of the corners in leaf order; 0 where there are none.
+    pub leaf_order_bytes: u64,
     /// Until these were on the device, by the host's clock.
     pub structure_time: Duration,
 }
@@ -76,8 +78,8 @@ impl Uploaded {
             }
             false => None,
         };
-        let structure_bytes =
-            size(&nodes) + size(bytes(triangle_refs)) + if corners.is_some() { corner_bytes as u64 } else { 0 };
+        let structure_bytes = size(&nodes) + size(bytes(triangle_refs));
+        let leaf_order_bytes = if corners.is_some() { corner_bytes as u64 } else { 0 };
         let [vertices, triangle_refs, nodes, materials, of_triangles] =
             inputs.map(|(what, contents, texel)| device.time_upload(|| input(device, what, contents, texel, textures)));
         let ((triangle_refs, refs_time), (nodes, nodes_time)) = (triangle_refs?, nodes?);
@@ -103,6 +105,7 @@ impl Uploaded {
                 + size(bytes(&scene.materials))
                 + size_of::<u32>() as u64 * scene.triangles.len() as u64,
             structure_bytes,
+            leaf_order_bytes,
             structure_time: refs_time + nodes_time + corners_time.unwrap_or_default(),
         };
         device.check()?;
