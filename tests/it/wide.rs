@@ -48,7 +48,7 @@ fn wide_trees_visit_fewer_nodes_and_test_more_boxes() {
         assert!(counts.iter().all(|sums| sums.rays == stack.rays), "{name}");
         for two in [stack, quantised] {
             assert!(four.inner < two.inner && four.steps() < two.steps(), "{name}: {two:?} {four:?}");
-            // One node of four boxes stands for up to three of two, so that here boxes may be fewer (hall: 10 %)
+            // One node of four boxes replaces up to three of two, so that here boxes may be fewer (hall: 10 %)
             assert!(four.boxes * 100 >= two.boxes * 80, "{name}: {two:?} {four:?}");
             assert!(eight.boxes >= two.boxes, "{name}: {two:?} {eight:?}");
         }

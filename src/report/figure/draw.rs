@@ -177,10 +177,10 @@ fn finished(svg: &str, title: &str) -> String {
     format!("{tag}\n<title>{escaped}</title>\n<style>{}</style>{rest}", theme::style_sheet())
 }
 
-/// An entry of the legend: label, style, faint or not, and what is drawn in front of it.
+/// An entry of the legend: label, style, faint or not, and what is drawn before it.
 type Entry = (String, usize, bool, Sample);
 
-/// What stands in front of a legend's label.
+/// What is drawn before a legend's label.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Sample {
     Line,

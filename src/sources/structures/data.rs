@@ -96,7 +96,7 @@ impl Data {
             let known = devices.add(&run.journal.provenance);
             for record in &run.journal.configurations {
                 let Some(&(device, info)) = known.get(record.device) else { continue };
-                let scene = scene_and_path(record);
+                let scene = record.scene.name.clone();
                 match Frame::of(device, scene.clone(), info, record) {
                     Some(frame) => rows.push((frame, (record, structure_of(run, record)))),
                     None => data.fail(Failure::of(device, scene, record)),
@@ -138,11 +138,6 @@ impl Data {
         });
         &mut self.groups[index]
     }
-}
-
-/// The scene, with the path where it is not the only one that the scene has.
-fn scene_and_path(record: &ConfigurationRecord) -> String {
-    record.scene.name.clone()
 }
 
 fn name_of(structure: &str, variant: &Variant) -> String {

@@ -51,8 +51,8 @@ impl Results for Numbers {
         figures::all(&self.0)
     }
 
-    fn lead(&self, runs: &[RecordedRun], rows: Rows) -> String {
-        report::lead(&self.0, runs.len(), rows)
+    fn lead(&self, runs: &[RecordedRun], _rows: Rows) -> String {
+        report::lead(&self.0, runs.len())
     }
 
     fn sections(&self, _runs: &[RecordedRun]) -> Vec<Section> {

@@ -2,11 +2,11 @@
 
 use super::data::Data;
 use crate::report::html::escape;
+use crate::sources::Section;
 use crate::sources::rows::Device;
-use crate::sources::{Rows, Section};
 
 /// What the page is about.
-pub fn lead(data: &Data, runs: usize, _rows: Rows) -> String {
+pub fn lead(data: &Data, runs: usize) -> String {
     let devices: Vec<String> = data.devices.iter().map(|device| escape(&device.label)).collect();
     let runs = if runs == 1 { "one recorded run".into() } else { format!("{runs} recorded runs") };
     let mut text = format!(

@@ -6,6 +6,7 @@ use super::pareto::front;
 use super::{ORIGIN, SOURCE};
 use crate::report::{Cell, Column, Form, Row, Table};
 use crate::sources::Options;
+use crate::workloads::trace::record::CounterSums;
 
 /// Names of the tables.
 pub const IDS: [&str; 3] = ["rates", "work", "break-even"];
@@ -123,7 +124,7 @@ fn work(group: &Group) -> Table {
     let columns = columns.map(|(name, unit)| Column::new(name, unit, Form::Fixed(2))).to_vec();
     let mut table = table("work", "What a ray does, on average over all ray types", &["structure"], columns);
     let row = |entry: &Entry| {
-        let cell = |of: fn(&crate::workloads::trace::record::CounterSums) -> u64| {
+        let cell = |of: fn(&CounterSums) -> u64| {
             Cell::number(entry.counts.as_ref().map(|counts| of(counts) as f64 / counts.rays as f64))
         };
         let cells = vec![

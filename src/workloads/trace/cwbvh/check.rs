@@ -5,9 +5,8 @@
 
 use super::layout::{CwChild, CwNode, Cwbvh, INNER, WIDTH};
 use crate::math::Aabb;
-use crate::workloads::trace::bvh::DEPTH_LIMIT;
-use crate::workloads::trace::bvh::cover::Cover;
 use crate::workloads::trace::common::check::{Expected, Verdict, ensure};
+use crate::workloads::trace::wide::reached::Reached;
 use glam::Vec3A;
 
 pub(crate) fn check(tree: &Cwbvh, expected: &Expected) -> Verdict {
@@ -22,48 +21,24 @@ pub(crate) fn check(tree: &Cwbvh, expected: &Expected) -> Verdict {
     tree.triangle_refs
         .iter()
         .for_each(|r| divided[r.triangle as usize] = divided[r.triangle as usize].saturating_add(1));
-    let mut walk = Walk {
-        tree,
-        seen: vec![false; count],
-        used: vec![false; tree.triangle_refs.len()],
-        cover: Cover::new(expected),
-        is_divided: divided.iter().any(|&times| times > 1),
-        depth: 0,
-    };
+    let reached = Reached::new(count, &tree.triangle_refs, expected);
+    let mut walk = Walk { tree, reached, is_divided: divided.iter().any(|&times| times > 1) };
     walk.node(0, 1, tree.bounds)?;
-    ensure!(walk.depth == tree.depth, "depth is {}, the field says {}", walk.depth, tree.depth);
-    if let Some(node) = walk.seen.iter().position(|&seen| !seen) {
-        return Err(format!("node {node} cannot be reached"));
-    }
-    if let Some(triangle_ref) = walk.used.iter().position(|&used| !used) {
-        return Err(format!("triangle reference {triangle_ref} is in no leaf"));
-    }
-    walk.cover.check()
+    walk.reached.all(tree.depth)
 }
 
 struct Walk<'a> {
     tree: &'a Cwbvh,
-    /// Nodes that were visited.
-    seen: Vec<bool>,
-    /// Triangle references that a leaf has.
-    used: Vec<bool>,
-    cover: Cover<'a>,
+    reached: Reached<'a>,
     /// A triangle has several references.
     is_divided: bool,
-    depth: u32,
 }
 
 impl Walk<'_> {
     /// Checks a node and all below it, which rays reach through a box; returns the box around the parts of triangles
     /// there.
     fn node(&mut self, index: u32, depth: u32, way: Aabb) -> Result<Aabb, String> {
-        let Some(seen) = self.seen.get_mut(index as usize) else {
-            return Err(format!("node {index} lies behind the last one"));
-        };
-        ensure!(!*seen, "node {index} is reached twice");
-        *seen = true;
-        ensure!(depth <= DEPTH_LIMIT, "node {index} lies deeper than {DEPTH_LIMIT}");
-        self.depth = self.depth.max(depth);
+        self.reached.node(index as usize, depth)?;
         let node = self.tree.nodes[index as usize];
         let grid = node.grid();
         ensure!(grid.step.to_array().iter().all(|step| step.is_normal()), "node {index} has steps {}", grid.step);
@@ -77,13 +52,11 @@ impl Walk<'_> {
             let way = Aabb { min: way.min.max(own.min), max: way.max.min(own.max) };
             let content = match child {
                 CwChild::Node(next) => self.node(next, depth + 1, way)?,
-                CwChild::Leaf(first, count) => self.leaf(&what, first, count, way)?,
+                CwChild::Leaf(first, count) => self.reached.leaf(&what, (first, count), way)?,
             };
             contents[place] = Some(content);
         }
-        let filled = contents.iter().flatten().count();
-        let least = if self.seen.len() == 1 { 1 } else { 2 };
-        ensure!(filled >= least, "node {index} has {filled} children");
+        self.reached.children(index as usize, contents.iter().flatten().count())?;
         let around = contents.iter().flatten().fold(Aabb::EMPTY, |all, content| all.union(*content));
         if !self.is_divided {
             ensure!(
@@ -100,19 +73,6 @@ impl Walk<'_> {
             }
         }
         Ok(around)
-    }
-
-    /// The box around a leaf's triangles, as far as rays reach them.
-    fn leaf(&mut self, what: &str, first: u32, count: u32, way: Aabb) -> Result<Aabb, String> {
-        let range = first as usize..first as usize + count as usize;
-        let Some(triangle_refs) = self.tree.triangle_refs.get(range.clone()) else {
-            return Err(format!("{what} reaches behind the last triangle reference"));
-        };
-        if let Some(again) = range.clone().find(|&i| self.used[i]) {
-            return Err(format!("{what} has triangle reference {again}, which another leaf has as well"));
-        }
-        self.used[range].fill(true);
-        self.cover.leaf(what, way, triangle_refs)
     }
 }
 

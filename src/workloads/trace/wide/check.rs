@@ -2,10 +2,9 @@
 
 use super::layout::{Slot, Wide};
 use crate::math::Aabb;
-use crate::workloads::trace::bvh::DEPTH_LIMIT;
-use crate::workloads::trace::bvh::cover::Cover;
 use crate::workloads::trace::bvh::stack::leaf_triangle_refs;
 use crate::workloads::trace::common::check::{Expected, Verdict, ensure, same};
+use crate::workloads::trace::wide::reached::Reached;
 
 pub(crate) fn check(tree: &Wide, expected: &Expected) -> Verdict {
     let (width, slots) = (tree.width, tree.slots.len());
@@ -23,34 +22,15 @@ pub(crate) fn check(tree: &Wide, expected: &Expected) -> Verdict {
         ensure!(tree.depth == 0 && tree.stack == 0, "no triangles, but a depth");
         return Ok(());
     }
-    let mut walk = Walk {
-        tree,
-        seen: vec![false; slots / width],
-        used: vec![false; tree.triangle_refs.len()],
-        cover: Cover::new(expected),
-        depth: 0,
-        stack: 0,
-    };
+    let mut walk = Walk { tree, reached: Reached::new(slots / width, &tree.triangle_refs, expected), stack: 0 };
     walk.node(0, 1, 0)?;
-    ensure!(walk.depth == tree.depth, "depth is {}, the field says {}", walk.depth, tree.depth);
     ensure!(walk.stack == tree.stack, "a stack needs {} entries, the field says {}", walk.stack, tree.stack);
-    if let Some(node) = walk.seen.iter().position(|&seen| !seen) {
-        return Err(format!("node {node} cannot be reached"));
-    }
-    if let Some(triangle_ref) = walk.used.iter().position(|&used| !used) {
-        return Err(format!("triangle reference {triangle_ref} is in no leaf"));
-    }
-    walk.cover.check()
+    walk.reached.all(tree.depth)
 }
 
 struct Walk<'a> {
     tree: &'a Wide,
-    /// Nodes that were visited.
-    seen: Vec<bool>,
-    /// Triangle references that a leaf has.
-    used: Vec<bool>,
-    cover: Cover<'a>,
-    depth: u32,
+    reached: Reached<'a>,
     stack: u32,
 }
 
@@ -58,11 +38,7 @@ impl Walk<'_> {
     /// Checks a node and all below it; returns the box around its children, as decoded. `pending` entries of a stack
     /// may wait below it.
     fn node(&mut self, index: usize, depth: u32, pending: u32) -> Result<Aabb, String> {
-        ensure!(index < self.seen.len(), "node {index} lies behind the last one");
-        ensure!(!self.seen[index], "node {index} is reached twice");
-        self.seen[index] = true;
-        ensure!(depth <= DEPTH_LIMIT, "node {index} lies deeper than {DEPTH_LIMIT}");
-        self.depth = self.depth.max(depth);
+        self.reached.node(index, depth)?;
         let slots = self.tree.node(index as u32);
         let filled: Vec<(usize, &Slot)> = slots.iter().enumerate().filter(|(_, slot)| !slot.is_empty()).collect();
         let no_child = slots.iter().filter(|slot| slot.is_empty());
@@ -70,8 +46,7 @@ impl Walk<'_> {
         let is_first = |(place, slot): (usize, &(usize, &Slot))| slot.0 == place;
         let are_first = filled.iter().enumerate().all(is_first);
         ensure!(self.tree.octants || are_first, "node {index} has children behind an empty slot");
-        let least = if self.seen.len() == 1 { 1 } else { 2 };
-        ensure!(filled.len() >= least, "node {index} has {} children", filled.len());
+        self.reached.children(index, filled.len())?;
         let pending = pending + filled.len() as u32 - 1;
         self.stack = self.stack.max(pending);
         let planes = &self.tree.planes;
@@ -80,7 +55,9 @@ impl Walk<'_> {
             let what = format!("child {place} of node {index}");
             let own = slot.aabb(planes);
             let content = if slot.is_leaf() {
-                self.leaf(&what, slot, own)?
+                let (first, count) = leaf_triangle_refs(slot.reference);
+                ensure!(count > 0, "{what} is a leaf without triangle references");
+                self.reached.leaf(&what, (first, count), own)?
             } else {
                 self.node(slot.reference as usize, depth + 1, pending)?
             };
@@ -90,20 +67,5 @@ impl Walk<'_> {
             around = around.union(own);
         }
         Ok(around)
-    }
-
-    /// The box around the leaf's triangles, each clipped to the leaf.
-    fn leaf(&mut self, what: &str, slot: &Slot, own: Aabb) -> Result<Aabb, String> {
-        let (first, count) = leaf_triangle_refs(slot.reference);
-        ensure!(count > 0, "{what} is a leaf without triangle references");
-        let range = first as usize..first as usize + count as usize;
-        let Some(triangle_refs) = self.tree.triangle_refs.get(range.clone()) else {
-            return Err(format!("{what} reaches behind the last triangle reference"));
-        };
-        if let Some(again) = range.clone().find(|&i| self.used[i]) {
-            return Err(format!("{what} has triangle reference {again}, which another leaf has as well"));
-        }
-        self.used[range].fill(true);
-        self.cover.leaf(what, own, triangle_refs)
     }
 }

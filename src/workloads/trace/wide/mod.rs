@@ -7,6 +7,7 @@ pub mod octants;
 mod octants_stack;
 pub mod pair_stack;
 mod quantise;
+pub(in crate::workloads::trace) mod reached;
 mod short_stack;
 pub mod stack;
 

@@ -5,8 +5,8 @@
 //! for Stackless BVH Traversal, 2010. A trail tells, for each level of the way from the root, which child the ray is
 //! in, by its place in the order of distances. An entry that finds no room takes that of the oldest one. Where the
 //! stack is empty, the ray goes down from the root again along the trail. In the paper a counter is set to its greatest
-//! value where the last child is visited. Ours: the trail has the number of children as well, since a hit takes children
-//! off the end of that order, so that another one might be taken for the last.
+//! value where the last child is visited. Ours: the trail has the number of children as well, since a hit takes
+//! children off the end of that order, so that another one might be taken for the last.
 
 use super::{EIGHT, FOUR, Wide};
 use crate::math::{MISS, Ray, ray_box};
