@@ -27,7 +27,7 @@ const SUMMARY: &str = "device,device_type,scene,triangles,structure,variant,conf
     build,traversal,ray_options,device_options,resolution,camera_path,interleaved_with,kernel_hash";
 const STRUCTURES: &str = "scene,structure,variant,cells_x,cells_y,cells_z,max_cell_triangles,references_per_triangle,\
     leaves,empty_leaves,max_leaf_triangles,nodes,depth,sah_cost,build_ms,build_threads,build_stages_ms,build_upload_ms,\
-    upload_ms,driver_build_ms,structure_bytes,geometry_bytes,thesis_bytes,rt2_bytes,triangles,vertices,note";
+    upload_ms,driver_build_ms,structure_bytes,leaf_order_bytes,geometry_bytes,thesis_bytes,rt2_bytes,triangles,vertices,note";
 
 #[test]
 fn statistics_by_hand() {

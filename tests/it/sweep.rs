@@ -647,9 +647,10 @@ fn mistakes_in_presets_are_located() {
 #[test]
 fn presets_are_sound() {
     let plan = Plan::new(&TRACE, &Request::default()).unwrap();
-    assert_eq!((plan.preset.as_str(), plan.cases.len()), ("quick", 90 + 14));
-    assert_eq!(plan.axes()["structure"], ["grid", "kdtree", "bvh", "bvh-stack", "ploc-stack", "bih"]);
-    assert_eq!((plan.axes()["config"].len(), plan.axes()["resolution"].len()), (3, 2));
+    assert_eq!((plan.preset.as_str(), plan.cases.len()), ("quick", 90 + 42 + 14));
+    let names = "grid kdtree bvh bvh-stack ploc-stack bih bvh-quantised bvh4 bvh8 cwbvh bvh-subgroup bvh-stackless";
+    assert_eq!(plan.axes()["structure"], names.split(' ').collect::<Vec<_>>());
+    assert_eq!((plan.axes()["config"].len(), plan.axes()["resolution"].len()), (5, 2));
     for (preset, cases) in [("rt2", 60), ("rt2-lite", 48)] {
         // Without the catalogue's bunny, dragon and sponza
         let library = Library { scenes_folder: Some("nowhere".into()), scene_time: None };

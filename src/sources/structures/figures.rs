@@ -54,12 +54,13 @@ pub fn all(data: &Data) -> Result<(Vec<Figure>, Vec<Missing>)> {
     Ok((figures, missing))
 }
 
-/// The figure of a ray configuration on a device: a panel for each scene, at its largest size.
+/// The figure of a ray configuration on a device: a panel for each scene, at the size with most structures; of several
+/// such sizes, the largest.
 fn figure(data: &Data, against: &Against, device: usize, config: Config) -> Result<Option<Figure>> {
     let mut shown: Vec<&Group> = Vec::new();
     for group in data.groups.iter().filter(|g| (g.device, g.config) == (device, config) && g.entries.len() > 1) {
         match shown.iter_mut().find(|known| known.scene == group.scene) {
-            Some(known) if known.size < group.size => *known = group,
+            Some(known) if (known.entries.len(), known.size) < (group.entries.len(), group.size) => *known = group,
             Some(_) => {}
             None => shown.push(group),
         }

@@ -44,7 +44,8 @@ pub fn reading() -> Section {
         ),
         (
             "The driver's structure",
-            "Nothing in it can be counted, and its size is not told; its build time is that of the device.",
+            "Nothing in it can be counted, and its size is not told. Its build time is that of the sorting on the CPU and \
+             of the driver's build.",
         ),
     ];
     let list: String =

@@ -12,7 +12,7 @@ use std::path::Path;
 pub type Row<'a> = (&'a Artifact, &'a Input);
 
 /// Columns of `structures.csv`: empty where one has no meaning for a structure.
-const COLUMNS: [&str; 27] = [
+const COLUMNS: [&str; 28] = [
     "scene",
     "structure",
     "variant",
@@ -34,6 +34,7 @@ const COLUMNS: [&str; 27] = [
     "upload_ms",
     "driver_build_ms",
     "structure_bytes",
+    "leaf_order_bytes",
     "geometry_bytes",
     "thesis_bytes",
     "rt2_bytes",

@@ -115,7 +115,7 @@ fn cost(bvh: &Bvh) -> f64 {
 /// whose triangles are of about one size.
 #[test]
 fn clustering_is_as_good_as_that_of_obvhs() {
-    for name in ["scan", "terrain"] {
+    for name in ["scan", "terrain", "hall", "stadium"] {
         let scene = built_in(name, 30_000);
         for (distance, radius) in [(PlocSearchDistance::Low, 6), (PlocSearchDistance::Medium, 14)] {
             let params = BvhBuildParams {

@@ -1,6 +1,6 @@
 //! The structures of today from hand-made rows: order, break-even, the Pareto front, figures.
 
-use super::synthetic::{Builder, sums};
+use super::synthetic::{Builder, sums, write_run};
 use rtbench::device::DeviceType;
 use rtbench::record::row::Status;
 use rtbench::report::{Cell, Table};
@@ -147,6 +147,34 @@ fn a_row_without_a_result_is_named() {
         "{:?}",
         tables[0].notes
     );
+}
+
+#[test]
+fn what_the_driver_builds_and_leaf_order_count() {
+    let mut run = run();
+    let built = &mut run.journal.structures[0];
+    (built.driver_build_ms, built.leaf_order_bytes) = (Some(6.0), Some(48_000));
+    let folder = tempfile::tempdir().unwrap();
+    write_run(&run, folder.path());
+    let written = RecordedRun::read(folder.path()).unwrap();
+    let tables = tables(&written, "rates");
+    let bvh = tables[0].rows.iter().find(|row| row.keys[0] == "bvh").unwrap();
+    // 32,000 and 48,000 bytes for 1,000 triangles; 4 ms and 6 ms
+    assert_eq!([number(&bvh.cells[4]), number(&bvh.cells[5])], [80.0, 10.0]);
+}
+
+#[test]
+fn a_figure_shows_the_size_with_most_structures() {
+    let mut builder = Builder::new();
+    for name in ["bvh", "bvh4", "bvh8"] {
+        add(&mut builder, name, 1.0, (4.0, None), 1);
+    }
+    for name in ["bvh", "bvh4"] {
+        let row = builder.row(scene(), name, Config::P, (128, 128), 4.0);
+        row.memory = Memory { structure_bytes: 1, ..Memory::default() };
+    }
+    let (figures, _) = (SOURCE.read)(&[builder.run]).figures().unwrap();
+    assert!(figures[0].svg.contains("64x64") && !figures[0].svg.contains("128x128"));
 }
 
 #[test]

@@ -4,8 +4,8 @@
 //!
 //! D. Meister and J. Bittner: Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy Construction, 2018.
 //! Ours: of equally good partners the one whose place differs in lower bits is taken, so that equal boxes merge in
-//! pairs; and after a pass in which less than an eighth of the clusters merged, as where boxes lie inside each other,
-//! all merge in pairs. So there are never more than some hundred passes, and no tree is deeper than that.
+//! pairs; and after a pass in which less than a 64th of the clusters merged (from pass 64 on, an eighth), as where boxes
+//! lie inside each other, all merge in pairs. So there are never more than some 200 passes, and no tree is deeper.
 
 use super::Input;
 use super::codes::Sorted;
@@ -18,8 +18,12 @@ use crate::workloads::trace::common::sah::unit;
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// After a pass in which fewer than one in so many clusters merged, all of the next one merge.
-pub(super) const FEW: u32 = 8;
+/// After a pass in which fewer than one in so many clusters merged, all of the next one merge: in the first [`EARLY`]
+/// passes, and in those behind them.
+const FEW: [u32; 2] = [64, 8];
+
+/// Passes in which few merges will do.
+const EARLY: usize = 64;
 
 /// What can be set.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,9 +34,9 @@ pub struct Config {
     pub max_leaf: u32,
 }
 
-/// True if all clusters merge in the pass after one in which `merges` of `clusters` pairs merged.
-pub(super) fn is_forced(merges: u32, clusters: u32) -> bool {
-    merges * FEW < clusters
+/// True if all clusters merge in the pass after one in which `merges` of `clusters` pairs merged, the `passes`-th one.
+pub(super) fn is_forced(merges: u32, clusters: u32, passes: usize) -> bool {
+    u64::from(merges) * u64::from(FEW[usize::from(passes >= EARLY)]) < u64::from(clusters)
 }
 
 /// An inner node while the tree grows. Nodes are numbered: first the sorted triangles, then inner nodes as they are
@@ -84,12 +88,13 @@ pub fn build(scene: &Scene, config: &Config) -> Result<Bvh> {
     let cluster = |(i, &prim): (usize, &u32)| Cluster::of(&prims[prim as usize].aabb(), unit, i as u32);
     let mut clusters: Vec<Cluster> = order.par_iter().with_min_len(CHUNK).enumerate().map(cluster).collect();
     let mut growing = Growing { prims: &prims, order: &order, inner: Vec::with_capacity(order.len()) };
-    let mut forced = false;
+    let (mut forced, mut passes) = (false, 0);
     while clusters.len() > 1 {
+        passes += 1;
         let before = clusters.len() as u32;
         let partners = partners(&clusters, config.radius, forced);
         clusters = growing.merge(&clusters, &partners);
-        forced = is_forced(before - clusters.len() as u32, before);
+        forced = is_forced(before - clusters.len() as u32, before, passes);
     }
     let nodes = vec![BvhNode::NONE; 2 + 2 * growing.inner.iter().filter(|n| n.triangles > config.max_leaf).count()];
     let refs = Vec::with_capacity(order.len());

@@ -74,6 +74,13 @@ pub struct StructureRecord {
     /// Milliseconds of its upload to the device; absent where it was not measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub upload_ms: Option<f64>,
+    /// Milliseconds that the driver took to build its own structure; absent for all others and in schema 1.
+    #[serde(skip)]
+    pub driver_build_ms: Option<f64>,
+    /// Bytes of triangles in leaf order, which are not in `memory`; absent where there are none, and in
+    /// schema 1.
+    #[serde(skip)]
+    pub leaf_order_bytes: Option<u64>,
     /// How it was built where not as its options say; absent otherwise.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub note: String,

@@ -107,21 +107,24 @@ impl StructureRecord {
             build_threads: integer(&artifact.metrics, "build_threads") as usize,
             memory: memory_of(&artifact.metrics),
             upload_ms: metric(&artifact.metrics, None, "upload_ms").and_then(Value::number),
+            driver_build_ms: metric(&artifact.metrics, None, "driver_build_ms").and_then(Value::number),
+            leaf_order_bytes: metric(&artifact.metrics, None, "leaf_order_bytes").and_then(Value::integer),
             note: artifact.note.clone(),
         })
     }
 
     /// For the general schema.
     pub(crate) fn to_artifact(&self) -> Artifact {
-        let StructureRecord { scene, structure, variant, properties, build_ms, build_threads, memory, upload_ms, note } =
-            self;
+        let StructureRecord { scene, structure, variant, note, .. } = self;
         let mut key = Key { workload: WORKLOAD.into(), ..Key::default() };
         key.axes.insert("scene".into(), scene.name.clone());
         key.axes.insert("structure".into(), structure.clone());
         key.axes.extend(split_variant(structure, variant));
         key.inputs.insert("scene".into(), scene.hash.clone());
-        let mut metrics = structure_metrics(properties, *memory, *build_ms, *build_threads);
-        metrics.extend(upload_ms.map(|ms| Metric::new("upload_ms", ms)));
+        let mut metrics = structure_metrics(&self.properties, self.memory, self.build_ms, self.build_threads);
+        metrics.extend(self.driver_build_ms.map(|ms| Metric::new("driver_build_ms", ms)));
+        metrics.extend(self.leaf_order_bytes.map(|bytes| Metric::new("leaf_order_bytes", bytes)));
+        metrics.extend(self.upload_ms.map(|ms| Metric::new("upload_ms", ms)));
         Artifact { key, metrics, note: note.clone() }
     }
 }

@@ -52,7 +52,7 @@ pub fn build(
         // A device that merges nothing would go on for ever
         let merges = passes.total()?.clamp(1, clusters - 1);
         firsts.push(first + merges);
-        forced = is_forced(merges, clusters);
+        forced = is_forced(merges, clusters, firsts.len() - 1);
         clusters -= merges;
     }
     let (nodes, sorted, depth) = growing.nodes(&firsts, &mut times, interrupted)?;
