@@ -10,6 +10,34 @@ const NAME: usize = 10;
 /// Width that is kept for keys where other columns have words.
 const KEYS: usize = 20;
 
+/// Breaks keys that have options into lines of at most so many characters.
+fn break_keys(drawn: &mut comfy_table::Table, table: &Table, most: usize) {
+    for (row, mut cells) in drawn.row_iter_mut().zip(table.body("-")) {
+        if let Some(key) = cells.first_mut() {
+            *key = broken(key, most);
+        }
+        *row = cells.into();
+    }
+}
+
+/// A name with options, in lines of at most `most` characters as far as its parts allow: `name:`, then ` a=1,` and
+/// ` b=2`.
+fn broken(key: &str, most: usize) -> String {
+    if key.contains(' ') {
+        return key.to_owned();
+    }
+    let mut lines = vec![String::new()];
+    for part in key.split_inclusive([':', ',']) {
+        let line = lines.last_mut().expect("there is one");
+        if line.is_empty() || line.chars().count() + part.chars().count() <= most {
+            line.push_str(part);
+        } else {
+            lines.push(format!(" {part}"));
+        }
+    }
+    lines.join("\n")
+}
+
 /// Writes a table with its title above and its notes below.
 pub fn write(table: &Table) -> String {
     let mut text = wrap(&table.caption(), "");
@@ -57,9 +85,10 @@ pub fn write(table: &Table) -> String {
     let too_much = width(&drawn).saturating_sub(WIDTH);
     let names = table.rows.iter().map(|row| row.keys[0].chars().count()).max().unwrap_or(0);
     if let Some(column) = drawn.column_mut(0).filter(|_| too_much > 0) {
-        // Long keys are broken at spaces before any other column gets narrower
-        let most = names.saturating_sub(too_much).max(NAME) as u16;
-        column.set_constraint(ColumnConstraint::UpperBoundary(Width::Fixed(most + 1)));
+        // Long keys are broken at spaces, and in front of options, before any other column gets narrower
+        let most = names.saturating_sub(too_much).max(NAME);
+        column.set_constraint(ColumnConstraint::UpperBoundary(Width::Fixed(most as u16 + 1)));
+        break_keys(&mut drawn, table, most);
     }
     if width(&drawn) > WIDTH {
         // Then one space between columns has to do

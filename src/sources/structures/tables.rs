@@ -72,7 +72,7 @@ fn rates(group: &Group) -> Table {
         Column::new("frame", "ms", Form::Time),
         Column::new("noise", "%", Form::Fixed(1)),
         Column::new("SAH cost", "", Form::Fixed(2)),
-        Column::new("structure", "bytes/triangle", Form::Fixed(1)),
+        Column::new("structure", "B/triangle", Form::Fixed(1)),
         Column::new("build", "ms", Form::Time),
         Column::new("upload", "ms", Form::Time),
         Column::new("threads", "", Form::Whole),
