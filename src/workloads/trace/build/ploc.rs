@@ -4,8 +4,9 @@
 //!
 //! D. Meister and J. Bittner: Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy Construction, 2018.
 //! Ours: of equally good partners the one whose place differs in lower bits is taken, so that equal boxes merge in
-//! pairs; and after a pass in which less than a 64th of the clusters merged (from pass 64 on, an eighth), as where boxes
-//! lie inside each other, all merge in pairs. So there are never more than some 200 passes, and no tree is deeper.
+//! pairs; and after a pass in which less than a 64th of the clusters merged (from pass 64 on, an eighth), as where
+//! boxes lie inside each other, all merge in pairs. So there are never more than some 200 passes, and no tree is
+//! deeper.
 
 use super::Input;
 use super::codes::Sorted;
