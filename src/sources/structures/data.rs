@@ -26,8 +26,9 @@ pub struct Entry {
     pub build_threads: usize,
     /// Milliseconds of the upload; `None` where it was not measured.
     pub upload_ms: Option<f64>,
-    /// Bytes of the structure on the device, for each triangle of the scene; triangles in leaf order are in it.
-    pub bytes_per_triangle: f64,
+    /// Bytes of the structure on the device, for each triangle of the scene; triangles in leaf order are in it. `None`
+    /// for the driver's own structure, whose size is not told.
+    pub bytes_per_triangle: Option<f64>,
     /// Expected cost of a ray by the surface-area heuristic; `None` for a structure without it.
     pub sah_cost: Option<f64>,
     /// Counts of all rays; `None` where only rays were counted.
@@ -160,17 +161,19 @@ fn entry(frame: &Frame<String>, record: &ConfigurationRecord, structure: Option<
         return None;
     }
     let triangles = record.scene.triangles.max(1) as f64;
-    let of_driver = structure.and_then(|built| built.driver_build_ms).unwrap_or_default();
+    let of_driver = structure.and_then(|built| built.driver_build_ms);
     let leaf_order = structure.and_then(|built| built.leaf_order_bytes).unwrap_or_default();
     Some(Entry {
         name: name_of(&frame.structure, &frame.variant),
         frame_ms: frame.mean_ms,
         noise_pct: frame.noise_pct,
         mrays_per_s: counts.rays as f64 / total_ms / 1e3,
-        build_ms: structure.map_or(record.build_ms, |built| built.build_ms) + of_driver,
+        build_ms: structure.map_or(record.build_ms, |built| built.build_ms) + of_driver.unwrap_or_default(),
         build_threads: structure.map_or(record.build_threads, |built| built.build_threads),
         upload_ms: structure.and_then(|built| built.upload_ms),
-        bytes_per_triangle: (record.memory.structure_bytes + leaf_order) as f64 / triangles,
+        bytes_per_triangle: of_driver
+            .is_none()
+            .then_some((record.memory.structure_bytes + leaf_order) as f64 / triangles),
         sah_cost: structure.and_then(|built| built.properties.sah_cost),
         counts: (counts.tests > 0).then_some(counts),
     })

@@ -11,7 +11,8 @@ struct Against {
     id: &'static str,
     words: &'static str,
     label: &'static str,
-    of: fn(&Entry) -> f64,
+    /// `None` where it is not known.
+    of: fn(&Entry) -> Option<f64>,
 }
 
 const AGAINST: [Against; 2] = [
@@ -19,7 +20,7 @@ const AGAINST: [Against; 2] = [
         id: "build-time",
         words: "Rays per second against the time until the first ray",
         label: "build and upload [ms]",
-        of: Entry::ready_ms,
+        of: |entry| Some(entry.ready_ms()),
     },
     Against {
         id: "bytes",
@@ -87,13 +88,15 @@ fn figure(data: &Data, against: &Against, device: usize, config: Config) -> Resu
 }
 
 fn panel(group: &Group, against: &Against, names: &[&str]) -> Panel {
-    let points: Vec<(f64, f64)> = group.entries.iter().map(|entry| ((against.of)(entry), entry.mrays_per_s)).collect();
+    let known: Vec<(&Entry, f64)> =
+        group.entries.iter().filter_map(|entry| Some((entry, (against.of)(entry)?))).collect();
+    let points: Vec<(f64, f64)> = known.iter().map(|&(entry, x)| (x, entry.mrays_per_s)).collect();
     let (x, y) = (points.iter().map(|p| p.0), points.iter().map(|p| p.1));
     let axis = |label: &str, values: Vec<f64>| Axis::of_values(label, spreads(values.iter().copied()), values);
     let mut best: Vec<(f64, f64)> =
         points.iter().zip(front(&points)).filter(|(_, best)| *best).map(|(point, _)| *point).collect();
     best.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let marks = group.entries.iter().zip(&points).map(|(entry, &at)| {
+    let marks = known.iter().zip(&points).map(|(&(entry, _), &at)| {
         let number = names.iter().position(|name| *name == entry.name).unwrap_or_default();
         Mark { text: (number + 1).to_string(), label: entry.name.clone(), style: number, at }
     });
