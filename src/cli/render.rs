@@ -10,7 +10,7 @@ use crate::guard;
 use crate::record::picture;
 use crate::workloads::size::parse_size;
 use crate::workloads::trace::backend::{Config, Counters, Prepared, Size, surface_epsilon};
-use crate::workloads::trace::{Selection, counting, pictures, rays, tracer};
+use crate::workloads::trace::{Agreement, Selection, counting, pictures, rays, tracer};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -115,6 +115,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     device::announce(&device);
     let built = selection.build(&scene, arguments.device.threads)?;
     let mut prepared = tracer::prepare(&device.device, &scene, &*built.structure, selection.method())?;
+    if arguments.heatmap.is_some() && selection.method().traversal.agreement == Agreement::HitsOnly {
+        let problem = format!("nothing but rays is counted for {}", selection.name());
+        return Err(Error::argument("--heatmap", problem, "leave it out, or choose another structure"));
+    }
     let rgba = match arguments.heatmap {
         None => pictures::image(&mut *prepared, config, view, size)?,
         Some(heatmap) => paint(heatmap, arguments.scale_max, &mut *prepared, config, view, size)?,
@@ -128,7 +132,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         "{}: {} {} {config:?}, {}x{}, frame {} of {} on {}\n",
         arguments.out.display(),
         scene.name,
-        selection.name(),
+        selection.full_name(),
         size.width,
         size.height,
         arguments.frame,

@@ -76,3 +76,23 @@ fn a_short_stack_costs_visits_of_inner_nodes_only() {
         assert!(short[0].inner > full.inner && short[0].inner > short[1].inner, "{tree}: {full:?} {short:?}");
     }
 }
+
+/// A figure on a plain: one grid of planes for both is noted. In usual scenes it is not.
+#[test]
+fn coarse_planes_are_noted() {
+    let mut figure = load("sphere:triangles=2000").unwrap();
+    let note = |scene: &Scene, selection: &str| Selection::parse(selection).unwrap().build(scene, 0).unwrap().note;
+    for selection in ["bvh-quantised", "bvh4", "bvh8:build=sweep", "bvh-subgroup"] {
+        assert_eq!(note(&figure, selection), "", "{selection}");
+    }
+    for (vertex, position) in
+        figure.vertices.iter_mut().take(3).zip([[-1e5, 0.0, -1e5], [1e5, 0.0, 0.0], [0.0, 0.0, 1e5]])
+    {
+        vertex.position = position.into();
+    }
+    for selection in ["bvh-quantised", "bvh4", "bvh8:build=sweep", "bvh-subgroup"] {
+        let note = note(&figure, selection);
+        assert!(note.contains("times the surface of what they hold"), "{selection}: {note}");
+    }
+    assert_eq!(note(&figure, "cwbvh"), "");
+}

@@ -16,7 +16,8 @@ pub fn lead(data: &Data, runs: usize) -> String {
     );
     if data.devices.iter().any(Device::is_software) {
         text += "<p class=\"warning\">At least one device computes on the CPU. Its times rank no structures for a \
-                 GPU; counts, bytes and costs do not depend on the device.</p>\n";
+                 GPU; counts and costs do not depend on the device, and bytes only by triangles in leaf order, which \
+                 such a device has in addition.</p>\n";
     }
     for note in &data.notes {
         text += &format!("<p class=\"warning\">{}.</p>\n", escape(note));

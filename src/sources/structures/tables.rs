@@ -13,15 +13,16 @@ pub const IDS: [&str; 3] = ["rates", "work", "break-even"];
 
 /// The tables of these names, one for each scene, ray configuration and size on a device; an empty one without runs.
 pub fn build(data: &Data, ids: &[&str], options: &Options) -> Vec<Table> {
-    let is_shown =
-        |group: &&Group| !group.entries.is_empty() && options.resolution.is_none_or(|side| group.size.0 == side);
+    let is_shown = |group: &&Group| options.resolution.is_none_or(|side| group.size.0 == side);
     let groups: Vec<&Group> = data.groups.iter().filter(is_shown).collect();
     let of = |id: &str| -> Vec<Table> {
         let Some(&known) = IDS.iter().find(|known| **known == id) else { return Vec::new() };
         if groups.is_empty() {
             return vec![empty(known)];
         }
-        groups.iter().map(|group| one(known, group, &data.devices[group.device].label)).collect()
+        // Where nothing has a result, the first table says why
+        let has_it = |group: &&&Group| !group.entries.is_empty() || known == IDS[0];
+        groups.iter().filter(has_it).map(|group| one(known, group, &data.devices[group.device].label)).collect()
     };
     ids.iter().flat_map(|id| of(id)).collect()
 }
@@ -108,6 +109,11 @@ fn rates(group: &Group) -> Table {
              is ready first. none: it is never ahead.",
             reference.name
         ));
+        table.notes.push(
+            "structure: nodes, references and, where this device has them, triangles in leaf order; - where the driver \
+             does not tell."
+                .into(),
+        );
     }
     table
 }

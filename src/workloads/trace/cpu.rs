@@ -72,8 +72,13 @@ impl Backend for CpuDevice {
     ) -> Result<Box<dyn Prepared + 'a>> {
         let depth = structure.stack_depth();
         if depth as usize + 1 >= STACK_SIZE {
-            let problem = format!("{depth} levels are more than the twins' stack of {STACK_SIZE} holds");
-            return Err(Error::too_large("the tree", problem, "set another max_depth or max_leaf"));
+            let problem =
+                format!("a ray may have to keep {depth} nodes, and the stack of the twins holds {STACK_SIZE}");
+            return Err(Error::too_large(
+                "the tree",
+                problem,
+                "set another max_depth or max_leaf, where the builder has them",
+            ));
         }
         if method.traversal.cooperative && method.group.size() as usize > GROUP {
             let Group { width, height } = method.group;
@@ -81,7 +86,9 @@ impl Backend for CpuDevice {
         }
         match method.traversal.twin {
             Some(twin) => twin(TwinInput { device: self, scene, structure, method }),
-            None => Err(Error::unsupported(format!("{} has no CPU twin", method.traversal.kernel))),
+            None => {
+                Err(Error::unsupported(format!("{} has no CPU twin: choose a Vulkan device", method.traversal.kernel)))
+            }
         }
     }
 }

@@ -185,6 +185,17 @@ fn a_figure_shows_the_size_with_most_structures() {
 }
 
 #[test]
+fn what_has_no_result_at_all_is_named() {
+    let mut run = run();
+    for row in &mut run.journal.configurations {
+        (row.status, row.message) = (Status::Wrong, "hits differ".into());
+    }
+    let tables = (SOURCE.read)(std::slice::from_ref(&run)).tables(&["rates", "work"], &Options::default());
+    assert_eq!((tables.len(), tables[0].rows.len()), (1, 0));
+    assert!(tables[0].notes.iter().any(|note| note.contains("bvh8:build=ploc: hits differ")), "{:?}", tables[0].notes);
+}
+
+#[test]
 fn later_rows_replace_earlier_ones() {
     let mut builder = Builder::new();
     add(&mut builder, "bvh", 2.0, (4.0, None), 1);

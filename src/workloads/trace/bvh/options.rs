@@ -137,7 +137,7 @@ fn has_no_splits(s: &Selection) -> Option<String> {
 
 fn is_no_clustering(s: &Selection) -> Option<String> {
     let build = s.value("build");
-    (build != PLOC_PASSES).then(|| format!("build={build} merges no clusters"))
+    (build != PLOC_PASSES).then(|| format!("only build={PLOC_PASSES} has it"))
 }
 
 fn clustering(s: &Selection) -> clusters::Config {

@@ -15,11 +15,13 @@ pub use layout::{Slot, Wide, WideUniform};
 pub use quantise::{Numbers, Planes};
 
 use super::algorithm::{Builder, Made};
-use super::bvh;
+use super::bvh::{self, Bvh, BvhNode};
+use super::common::sah::half_area;
 use super::selection::Selection;
 use super::structure::StructureKind;
 use crate::device::vulkan::Texel;
 use crate::error::Result;
+use crate::math::Aabb;
 use crate::scene::Scene;
 use std::sync::Arc;
 
@@ -72,5 +74,28 @@ fn has_octants(s: &Selection) -> bool {
 /// Builds the BVH that the options describe, and collapses it.
 pub(in crate::workloads::trace) fn build(s: &Selection, scene: &Scene, width: usize) -> Result<Made> {
     let (bvh, note) = bvh::options::build(s, scene)?;
-    Ok(Made { structure: Arc::new(collapse::collapse(bvh, width, has_octants(s))), note })
+    let swelling = swelling(&bvh);
+    let tree = collapse::collapse(bvh, width, has_octants(s));
+    let coarse = (swelling > MUCH).then(|| {
+        format!(
+            "half of the leaves' boxes have more than {swelling:.1} times the surface of what they hold: {} planes on each \
+             axis are few for this scene",
+            tree.planes.last
+        )
+    });
+    let notes: Vec<String> = [Some(note).filter(|note| !note.is_empty()), coarse].into_iter().flatten().collect();
+    Ok(Made { structure: Arc::new(tree), note: notes.join("; ") })
+}
+
+/// From so many times the surface on, boxes of leaves are much larger than what they hold.
+const MUCH: f64 = 2.0;
+
+/// The surface of a leaf's box on the planes of the whole scene, as a multiple of that of what it holds: the median.
+fn swelling(bvh: &Bvh) -> f64 {
+    let planes = Planes::around(bvh.bounds, u16::MAX);
+    let of_leaf = |own: Aabb| half_area(&planes.aabb(planes.numbers(own))) / half_area(&own);
+    let leaves = bvh.nodes.iter().filter(|node| node.count > 0).map(BvhNode::aabb);
+    let mut ratios: Vec<f64> = leaves.filter(|own| half_area(own) > 0.0).map(of_leaf).collect();
+    let middle = ratios.len() / 2;
+    if ratios.is_empty() { 1.0 } else { *ratios.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
