@@ -1,6 +1,7 @@
 //! `rtbench kernels`: the static cost of every kernel.
 
 use super::runs::write_or_print;
+use crate::device::vulkan::EVENT_MARKS;
 use crate::error::{Error, Result};
 use crate::record::row::Value;
 use crate::record::terminal;
@@ -19,6 +20,9 @@ pub struct Arguments {
     /// Parts of names, in any case: only kernels whose name has one of them
     #[arg(value_name = "NAME")]
     names: Vec<String>,
+    /// Instructions by the events of a traversal that they are for, as warps issue them, instead of by class
+    #[arg(long)]
+    events: bool,
     /// Format of the table
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -47,6 +51,8 @@ Examples:
       all kernels
   rtbench kernels bvh-stack kdtree
       those of two structures
+  rtbench kernels --events bvh-stack
+      what a step, a leaf, a test cost, for `rtbench simt`
   rtbench kernels --format csv -o kernels.csv
       for other programs";
 
@@ -72,7 +78,13 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             continue;
         }
         let mut line: Line = vec![("kernel", label.as_str().into())];
-        line.extend(source.cost()?.quantities().map(|(name, value)| (name, value.into())));
+        if arguments.events {
+            let costs = source.event_costs()?;
+            let of = |mark: &&'static str| (*mark, costs.get(mark).copied().unwrap_or(0.0).into());
+            line.extend(EVENT_MARKS.iter().map(of));
+        } else {
+            line.extend(source.cost()?.quantities().map(|(name, value)| (name, value.into())));
+        }
         line.push(("kernel_hash", source.hash().into()));
         lines.push(line);
     }
@@ -89,7 +101,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 fn columns(lines: &[Line]) -> Vec<(usize, String)> {
     let Some(first) = lines.first() else { return Vec::new() };
     let is_shown = |&(index, (name, _)): &(usize, &(&str, Value))| {
-        *name != "kernel_hash" && lines.iter().any(|line| line[index].1 != Value::Integer(0))
+        *name != "kernel_hash" && lines.iter().any(|line| line[index].1.number() != Some(0.0))
     };
     let columns = first.iter().enumerate().filter(is_shown);
     columns.map(|(index, (name, _))| (index, name.replace('_', " "))).collect()

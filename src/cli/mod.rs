@@ -29,6 +29,7 @@ mod render;
 mod report;
 mod runs;
 mod scenes;
+mod simt;
 mod structures;
 mod tables;
 mod trace;
@@ -77,6 +78,7 @@ enum Command {
     Scenes(scenes::Command),
     #[command(subcommand)]
     CameraPath(camera_path::Command),
+    Simt(simt::Arguments),
     Structures(structures::Arguments),
     Kernels(kernels::Arguments),
     Devices(devices::Arguments),
@@ -136,6 +138,7 @@ fn run(command: Command) -> Result<ExitCode> {
         Command::Trace(arguments) => trace::run(&arguments).map(done),
         Command::Scenes(command) => scenes::run(&command).map(done),
         Command::CameraPath(command) => camera_path::run(&command).map(done),
+        Command::Simt(arguments) => simt::run(&arguments).map(done),
         Command::Structures(arguments) => structures::run(&arguments).map(done),
         Command::Kernels(arguments) => kernels::run(&arguments).map(done),
         Command::Devices(arguments) => devices::run(&arguments).map(done),

@@ -29,6 +29,7 @@ mod results; // journal, CSV and JSON agree; statistics; rays and hits
 mod ropes; // the kd-tree's ropes against its full stack, ray by ray
 mod scene; // readers and what breaks them, memory while loading, caches, procedural scenes, the catalogue
 mod schema; // JSON Schema of journals and run.json against the types and real files
+mod simt; // warps: hand-made events, every twin, the thesis of 2009 ordered by issued work
 mod sources; // published numbers; tables, claims, figures and report from records
 mod spheres; // the sphere tracer: the same bits from every renderer, broken lanes, closed forms, work
 mod splat; // photon splatting: scans, twins and kernels, proof against closed forms and paths from the eye, rows

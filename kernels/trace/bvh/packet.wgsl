@@ -45,6 +45,7 @@ fn choose(left: u32, right: u32) {
     let any_right = ((sum >> 7u) & 127u) != 0u;
     let any_both = ((sum >> 14u) & 127u) != 0u;
     if (any_both || (any_left && any_right)) {
+        mark_vote();
         let right_first = (sum >> VOTE_SHIFT) > GROUP_SIZE;
         stack[stack_depth] = select(right, left, right_first);
         stack_depth += 1u;

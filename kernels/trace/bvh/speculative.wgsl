@@ -18,6 +18,7 @@ fn traverse(ray: Ray, limit: f32, any: bool, alive: bool) -> u32 {
         if (postponed == EMPTY) {
             break;
         }
+        mark_turn();
         pop(t, &walk);
         walk_to_leaf(wide, t, &walk);
         count_leaf();

@@ -181,6 +181,7 @@ fn traverse(unpermuted: Ray, limit: f32, any: bool, alive: bool) -> u32 {
     for (var step = 0; step <= last - first; step += 1) {
         let slice = select(last - step, first + step, forward);
 
+        mark_turn();
         // Which cells of the slice the rays touch
         let inside = slab(ray, 0u, slice);
         let part = vec2<f32>(max(inside.x, interval.x), min(inside.y, interval.y));

@@ -15,7 +15,7 @@ pub use acceleration::AccelerationStructure;
 pub use adapters::{Adapter, Selector, WANTED, adapters, adapters_with, choose, fitting};
 pub use binding::{Binding, BindingKind, Pipeline, Texel};
 pub use buffers::Buffer;
-pub use cost::KernelCost;
+pub use cost::{EVENT_MARKS, KernelCost};
 pub use device::{VulkanDevice, VulkanOptions};
 pub use pipeline::{Bindings, PipelineDescription, Resource};
 pub use read_buffer::{ReadBuffer, TEXTURE_WIDTH, Texture};

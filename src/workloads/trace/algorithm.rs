@@ -4,6 +4,7 @@ use super::cpu::Twin;
 use super::method::Group;
 use super::options::OptionInfo;
 use super::selection::Selection;
+use super::simt::Lockstep;
 use super::structure::{Structure, StructureKind};
 use crate::device::{Features, Interrupted, VulkanDevice};
 use crate::error::Result;
@@ -90,6 +91,8 @@ pub struct Traversal {
     pub agreement: Agreement,
     /// The same on the CPU, operation for operation; `None` if there is none.
     pub twin: Option<Twin>,
+    /// How its lanes wait for each other, as the loops of the kernel are written; `None` where that is not modelled.
+    pub lockstep: Option<fn(&Parameters) -> Lockstep>,
 }
 
 /// How exactly the hits of a traversal agree with the reference, on devices that compute as their twins do.
@@ -130,6 +133,7 @@ impl Traversal {
         needs: Features::of(&[]),
         agreement: Agreement::Exact,
         twin: None,
+        lockstep: None,
     };
 
     /// The same for one whose work-groups go together.

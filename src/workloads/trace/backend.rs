@@ -13,6 +13,7 @@ pub use crate::workloads::trace::count::{ByRayType, Counters, RAY_TYPES};
 pub use crate::workloads::trace::given::TraceRay;
 use crate::workloads::trace::method::Group;
 pub use crate::workloads::trace::rays::{AMBIENT_RAYS, Config, MAX_BOUNCES};
+use crate::workloads::trace::simt::Sums;
 use crate::workloads::trace::{Method, Structure};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
@@ -206,6 +207,14 @@ pub trait Prepared {
         size: Size,
         band: &mut dyn FnMut(u32, &[CountedPixel]),
     ) -> Result<()>;
+
+    /// What warps of `width` lanes issue for one frame, by ray type: on the CPU.
+    ///
+    /// # Errors
+    /// [`crate::Error::Unsupported`] where that is not modelled.
+    fn in_warps(&mut self, _config: Config, _view: &View, _size: Size, _width: u32) -> Result<ByRayType<Sums>> {
+        Err(Error::unsupported("warps are counted by twins on the CPU"))
+    }
 
     /// One pass over a path by the timed kernel: the time of each frame. Nothing is read back in between.
     fn time_path(

@@ -20,6 +20,20 @@ pub struct TraceCase {
     pub frames: Option<usize>,
     /// Name or file of the camera path; empty for the scene's own.
     pub camera_path: String,
+    /// Lanes of the warps whose work is counted as well; none is where absent.
+    pub warp_width: Option<u32>,
+}
+
+/// Lanes that a warp can have.
+const WARP_WIDTHS: [u32; 4] = [8, 16, 32, 64];
+
+/// Reads a value of the axis `warp_width`.
+///
+/// # Errors
+/// [`Error::Input`] for anything but 8, 16, 32 and 64.
+pub fn parse_warp_width(text: &str) -> Result<u32> {
+    let known = text.parse().ok().filter(|width| WARP_WIDTHS.contains(width));
+    known.ok_or_else(|| Error::argument("--warp-width", format!("{text:?} is no width"), "give 8, 16, 32 or 64"))
 }
 
 /// The value of the axis `frames` for all frames of a path, until the path is read.
@@ -28,7 +42,7 @@ const ALL_FRAMES: &str = "all";
 impl TraceCase {
     /// For the harness.
     pub fn to_case(&self, scene: &str) -> Case {
-        let TraceCase { selection, config, size, frames, camera_path } = self;
+        let TraceCase { selection, config, size, frames, camera_path, warp_width } = self;
         let resolution = format!("{}x{}", size.width, size.height);
         let frames_text = frames.map_or(ALL_FRAMES.to_owned(), |frames| frames.to_string());
         let mut axes: std::collections::BTreeMap<String, String> = [
@@ -41,6 +55,7 @@ impl TraceCase {
         ]
         .map(|(axis, value)| (axis.to_owned(), value))
         .into();
+        axes.extend(warp_width.map(|width| ("warp_width".to_owned(), width.to_string())));
         axes.extend(selection.option_axes().map(|(axis, options)| (axis.to_owned(), options)));
         // A ray per pixel and ray type; half of the points are taken to be seen by a light
         let rays_per_pixel = match config {
@@ -75,6 +90,10 @@ impl TraceCase {
             size: parse_size(case.axis("resolution"))?,
             frames,
             camera_path: case.axis("camera_path").to_owned(),
+            warp_width: match case.axis("warp_width") {
+                "" => None,
+                width => Some(parse_warp_width(width)?),
+            },
         })
     }
 }

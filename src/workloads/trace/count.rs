@@ -2,6 +2,7 @@
 //! and timed kernels include, are made from it.
 
 use crate::math::Ray;
+use crate::workloads::trace::simt::Mark;
 use crate::workloads::trace::traverse::{Lanes, Search, Traverser};
 use bytemuck::{Pod, Zeroable};
 use schemars::JsonSchema;
@@ -55,57 +56,26 @@ macro_rules! counters {
         }
 
         /// What traversals report of one ray.
-        pub trait Count: Copy + Default + Send + Sync {
+        pub trait Count: Send + Sync {
             $($(#[doc = $meaning])+ fn $event(&mut self);)+
-            /// What was counted.
-            fn total(&self) -> Counters;
-
-            /// Traverses with this way of counting.
-            fn traverse(
-                by: &dyn Traverser,
-                search: Search,
-                rays: &Lanes<Ray>,
-                alive: u64,
-                counters: &mut Lanes<Self>,
-            ) -> Lanes<u32>;
 
             /// So many tests of nodes' boxes.
             #[inline(always)]
             fn box_tests(&mut self, tests: u32) {
                 (0..tests).for_each(|_| self.box_test());
             }
+
+            /// What only a replay in warps needs.
+            #[inline(always)]
+            fn mark(&mut self, _mark: Mark) {}
         }
 
         impl Count for CountOff {
             $(#[inline(always)] fn $event(&mut self) {})+
-            fn total(&self) -> Counters {
-                Counters::default()
-            }
-            fn traverse(
-                by: &dyn Traverser,
-                search: Search,
-                rays: &Lanes<Ray>,
-                alive: u64,
-                _: &mut Lanes<CountOff>,
-            ) -> Lanes<u32> {
-                by.uncounted(search, rays, alive)
-            }
         }
 
         impl Count for Counters {
             $(#[inline(always)] fn $event(&mut self) { self.$field += 1; })+
-            fn total(&self) -> Counters {
-                *self
-            }
-            fn traverse(
-                by: &dyn Traverser,
-                search: Search,
-                rays: &Lanes<Ray>,
-                alive: u64,
-                counters: &mut Lanes<Counters>,
-            ) -> Lanes<u32> {
-                by.counted(search, rays, alive, counters)
-            }
         }
 
         /// Event and field of each counter, in the order of [`Counters`].
@@ -113,9 +83,56 @@ macro_rules! counters {
     };
 }
 
+/// A way of counting the rays of frames.
+pub trait Tally: Count + Copy + Default {
+    /// What was counted.
+    fn total(&self) -> Counters;
+
+    /// Traverses rays of a type in this way.
+    fn traverse(
+        by: &dyn Traverser,
+        of: (usize, Search),
+        rays: &Lanes<Ray>,
+        alive: u64,
+        counters: &mut Lanes<Self>,
+    ) -> Lanes<u32>;
+}
+
 /// Counts nothing and costs nothing: the timed twins.
 #[derive(Clone, Copy, Default)]
 pub struct CountOff;
+
+impl Tally for CountOff {
+    fn total(&self) -> Counters {
+        Counters::default()
+    }
+
+    fn traverse(
+        by: &dyn Traverser,
+        (_, search): (usize, Search),
+        rays: &Lanes<Ray>,
+        alive: u64,
+        _: &mut Lanes<CountOff>,
+    ) -> Lanes<u32> {
+        by.uncounted(search, rays, alive)
+    }
+}
+
+impl Tally for Counters {
+    fn total(&self) -> Counters {
+        *self
+    }
+
+    fn traverse(
+        by: &dyn Traverser,
+        of: (usize, Search),
+        rays: &Lanes<Ray>,
+        alive: u64,
+        counters: &mut Lanes<Counters>,
+    ) -> Lanes<u32> {
+        by.counted(of, rays, alive, counters)
+    }
+}
 
 impl Counters {
     /// Traversal steps: nodes visited, or cells for a grid.
@@ -132,7 +149,8 @@ impl CounterSums {
 }
 
 /// WGSL of the counting kernels, or of the timed ones, where every function is empty: `begin_pixel()` for invocations
-/// with several pixels, `begin_ray(kind)`, and for each counter `count_EVENT()` and `add_FIELD(n)`.
+/// with several pixels, `begin_ray(kind)`, for each counter `count_EVENT()` and `add_FIELD(n)`, and `mark_EVENT()` for
+/// what is never counted there.
 pub fn wgsl(counting: bool) -> String {
     let mut text = String::new();
     let mut line = |arguments: std::fmt::Arguments| writeln!(text, "{arguments}").expect("a String takes all text");
@@ -152,6 +170,8 @@ pub fn wgsl(counting: bool) -> String {
         line(format_args!("fn add_{field}(n: u32) {{ {add} }}"));
         line(format_args!("fn count_{event}() {{ add_{field}(1u); }}"));
     }
+    // What only a replay in warps and static costs need
+    ["vote", "turn"].iter().for_each(|mark| line(format_args!("fn mark_{mark}() {{}}")));
     text
 }
 

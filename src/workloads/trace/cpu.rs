@@ -6,11 +6,12 @@ use crate::error::{Error, Result};
 use crate::math::Hit;
 use crate::scene::Scene;
 use crate::workloads::trace::backend::*;
-use crate::workloads::trace::count::{Count, CountOff};
+use crate::workloads::trace::count::{CountOff, Tally};
 use crate::workloads::trace::given::{TraceRay, trace_group};
 use crate::workloads::trace::method::Group;
 use crate::workloads::trace::path::Frame;
 use crate::workloads::trace::render::render_group;
+use crate::workloads::trace::simt::{self, InWarps, Sums};
 use crate::workloads::trace::staged::{Waiting, bounce_group, primary_group};
 use crate::workloads::trace::traverse::{GROUP, STACK_SIZE, Traverse, Traverser, Triangles};
 use crate::workloads::trace::{Method, Structure, Traversal};
@@ -121,8 +122,9 @@ struct CpuPrepared<'a> {
 
 impl<'a> CpuPrepared<'a> {
     /// Renders a tile into `out`, which holds its rows in full width.
-    fn render<C: Count, P: Copy + Send>(
+    fn render<C: Tally, P: Copy + Send>(
         &self,
+        traversal: &dyn Traverser,
         frame: &Frame,
         tile: Tile,
         out: &mut [P],
@@ -131,10 +133,10 @@ impl<'a> CpuPrepared<'a> {
         self.device.pool().install(|| match self.method.is_staged(frame.config.bounces()) {
             false => {
                 self.groups(frame, tile, out, |corner, pixels| {
-                    render_group::<C>(frame, &*self.traversal, corner, |x, y, p| pixels.set(x, y, convert(p)));
+                    render_group::<C>(frame, traversal, corner, |x, y, p| pixels.set(x, y, convert(p)));
                 });
             }
-            true => self.staged::<C, P>(frame, tile, out, &convert),
+            true => self.staged::<C, P>(traversal, frame, tile, out, &convert),
         });
     }
 
@@ -158,8 +160,9 @@ impl<'a> CpuPrepared<'a> {
     }
 
     /// Pass by pass.
-    fn staged<C: Count, P: Copy + Send>(
+    fn staged<C: Tally, P: Copy + Send>(
         &self,
+        traversal: &dyn Traverser,
         frame: &Frame,
         tile: Tile,
         out: &mut [P],
@@ -167,14 +170,14 @@ impl<'a> CpuPrepared<'a> {
     ) {
         let lists = self.groups(frame, tile, out, |corner, pixels| {
             let mut list = Vec::new();
-            primary_group::<C>(frame, &*self.traversal, corner, &mut list, |x, y, pixel| {
+            primary_group::<C>(frame, traversal, corner, &mut list, |x, y, pixel| {
                 pixels.set(x, y, convert(pixel));
             });
             list
         });
         let mut list = lists.concat();
         for _ in 0..frame.config.bounces() {
-            let passed = list.par_chunks(GROUP).map(|paths| bounce_group::<C>(frame, &*self.traversal, paths));
+            let passed = list.par_chunks(GROUP).map(|paths| bounce_group::<C>(frame, traversal, paths));
             let (pixels, next): (Vec<Vec<CountedPixel>>, Vec<Vec<Waiting<C>>>) = passed.unzip();
             for (path, pixel) in list.iter().zip(pixels.into_iter().flatten()) {
                 let (x, y) = path.place;
@@ -196,7 +199,7 @@ impl<'a> CpuPrepared<'a> {
         let frame = self.frame(config, view, size);
         for tile in tiles(size, self.method.tiles, self.method.tiles, frame.group) {
             let rows = &mut pixels[(tile.row * size.width) as usize..][..(tile.rows * size.width) as usize];
-            self.render::<CountOff, _>(&frame, tile, rows, |p| p.pixel);
+            self.render::<CountOff, _>(&*self.traversal, &frame, tile, rows, |p| p.pixel);
         }
     }
 }
@@ -220,10 +223,33 @@ impl Prepared for CpuPrepared<'_> {
             let mut poison = CountedPixel::zeroed();
             poison.pixel = Pixel { triangle: POISON, rgba: POISON };
             let mut pixels = vec![poison; (tile.rows * size.width) as usize];
-            self.render::<Counters, _>(&frame, tile, &mut pixels, |p| p);
+            self.render::<Counters, _>(&*self.traversal, &frame, tile, &mut pixels, |p| p);
             band(tile.row, &pixels);
         }
         Ok(())
+    }
+
+    fn in_warps(&mut self, config: Config, view: &View, size: Size, width: u32) -> Result<ByRayType<Sums>> {
+        let frame = self.frame(config, view, size);
+        let Some(lockstep) = self.method.traversal.lockstep else {
+            return Err(Error::unsupported(format!(
+                "how lanes of {} wait is not modelled",
+                self.method.traversal.kernel
+            )));
+        };
+        // The twin's groups are those of the kernel, or 8 x 8 pixels of them one after another
+        let asked = self.method.group;
+        if (0..frame.group.size()).any(|lane| asked.place(lane) != frame.group.place(lane)) {
+            let Group { width, height } = asked;
+            return Err(Error::unsupported(format!("warps of a work-group of {width}x{height} are not modelled")));
+        }
+        let group = simt::Group { size: frame.group.size(), width };
+        let in_warps = InWarps::new(&*self.traversal, lockstep(&self.method.parameters), group);
+        for tile in tiles(size, 1, (size.pixels() as u32).div_ceil(BAND_PIXELS), frame.group) {
+            let mut out = vec![(); (tile.rows * size.width) as usize];
+            self.render::<Counters, _>(&in_warps, &frame, tile, &mut out, |_| ());
+        }
+        in_warps.sums().map_err(Error::Device)
     }
 
     fn time_path(

@@ -44,11 +44,11 @@ pub fn trace_group(
     let mut counters = [CountOff; GROUP];
     hits.fill(Hit::NONE);
     if let Some(limit) = any_before {
-        let occluded = traversal.any_hits(&rays, limit, alive, &mut counters);
+        let occluded = traversal.any_hits(0, &rays, limit, alive, &mut counters);
         bits(occluded).for_each(|lane| hits[lane] = Hit { t: 0.0, triangle: 0 });
         return;
     }
-    let triangle_refs = traversal.nearest_hits(&rays, alive, &mut counters);
+    let triangle_refs = traversal.nearest_hits(0, &rays, alive, &mut counters);
     for (lane, hit) in hits.iter_mut().enumerate().filter(|(lane, _)| triangle_refs[*lane] != MISS) {
         let triangle_ref = &triangles.triangle_refs[triangle_refs[lane] as usize];
         *hit = Hit { t: triangles.surface(&rays[lane], triangle_ref).t, triangle: triangle_ref.triangle };

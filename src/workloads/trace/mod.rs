@@ -36,6 +36,7 @@ pub mod schema1;
 pub mod secondary;
 mod selection;
 pub mod shade;
+pub mod simt;
 mod staged;
 mod structure;
 pub mod subgroup;

@@ -6,7 +6,7 @@ use crate::math::{MISS, Ray, T_MAX};
 use crate::scene::{Light, Scene};
 use crate::workloads::trace::Method;
 use crate::workloads::trace::backend::{ByRayType, Config, CountedPixel, GivenRay, Lengths, Pixel, RAY_TYPES, Size};
-use crate::workloads::trace::count::Count;
+use crate::workloads::trace::count::Tally;
 use crate::workloads::trace::method::{Group, Pattern, ShadowRays};
 use crate::workloads::trace::shade::{Surface, normalize3, phong, reflected_ray, rgba8, surface_at};
 use crate::workloads::trace::traverse::{GROUP, Lanes, Traverser, Triangles, bits, set_of};
@@ -131,7 +131,7 @@ impl<'a> Frame<'a> {
 
     /// The primary rays of a group whose top left pixel is `(column, row)`; `inside` says which pixels are in the
     /// image.
-    pub fn start_paths<C: Count>(&self, (column, row): (u32, u32), inside: u64) -> Paths<C> {
+    pub fn start_paths<C: Tally>(&self, (column, row): (u32, u32), inside: u64) -> Paths<C> {
         Paths {
             rays: std::array::from_fn(|lane| {
                 let (x, y) = self.places[lane];
@@ -147,7 +147,7 @@ impl<'a> Frame<'a> {
 
     /// Hands each pixel inside the image of the group whose top left pixel is `(column, row)` to `store`, with its
     /// column and row.
-    pub fn store<C: Count>(
+    pub fn store<C: Tally>(
         &self,
         paths: &Paths<C>,
         (column, row): (u32, u32),
@@ -161,15 +161,15 @@ impl<'a> Frame<'a> {
 
     /// Traces the segments of rays of this kind, adds their light, and makes the mirrored rays the next ones. False if
     /// nothing was hit.
-    pub fn follow<C: Count>(&self, traversal: &dyn Traverser, kind: usize, paths: &mut Paths<C>) -> bool {
+    pub fn follow<C: Tally>(&self, traversal: &dyn Traverser, kind: usize, paths: &mut Paths<C>) -> bool {
         let Paths { rays, alive, counters, .. } = paths;
         bits(*alive).for_each(|lane| counters[kind][lane].ray());
-        let triangle_refs = traversal.nearest_hits(rays, *alive, &mut counters[kind]);
+        let triangle_refs = traversal.nearest_hits(kind, rays, *alive, &mut counters[kind]);
         self.follow_hits(traversal, kind, paths, &triangle_refs)
     }
 
     /// The surfaces at the nearest hits of segments. Paths whose rays miss show the background and are done.
-    pub fn surfaces<C: Count>(
+    pub fn surfaces<C: Tally>(
         &self,
         kind: usize,
         paths: &mut Paths<C>,
@@ -193,7 +193,7 @@ impl<'a> Frame<'a> {
     }
 
     /// The same as [`Frame::follow`] for segments whose nearest hits are known.
-    pub fn follow_hits<C: Count>(
+    pub fn follow_hits<C: Tally>(
         &self,
         traversal: &dyn Traverser,
         kind: usize,
@@ -218,7 +218,7 @@ impl<'a> Frame<'a> {
                 let shadow = |s: Surface| shadow_ray(self.method.shadows, position, s.point, self.lengths.reach);
                 let shadows: Lanes<Ray> = std::array::from_fn(|lane| surfaces[lane].map_or(rays[lane], shadow));
                 bits(*alive).for_each(|lane| counters[SHADOW][lane].ray());
-                lit &= !traversal.any_hits(&shadows, 1.0, *alive, &mut counters[SHADOW]);
+                lit &= !traversal.any_hits(SHADOW, &shadows, 1.0, *alive, &mut counters[SHADOW]);
             }
             for lane in bits(lit) {
                 let Some(surface) = &surfaces[lane] else { continue };
@@ -243,7 +243,7 @@ impl<'a> Frame<'a> {
     }
 }
 
-impl<C: Count> Paths<C> {
+impl<C: Tally> Paths<C> {
     /// What is known of a pixel so far.
     pub fn pixel(&self, lane: usize) -> CountedPixel {
         let (triangle, t) = self.first[lane];

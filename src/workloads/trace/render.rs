@@ -1,14 +1,14 @@
 //! One frame, work-group by work-group. Twin of `kernels/trace/render.wgsl`.
 
 use crate::workloads::trace::backend::CountedPixel;
-use crate::workloads::trace::count::Count;
+use crate::workloads::trace::count::Tally;
 use crate::workloads::trace::path::{Frame, PRIMARY};
 use crate::workloads::trace::secondary::shade_primary;
 use crate::workloads::trace::traverse::{Traverser, bits};
 
 /// Renders the group whose top left pixel is `corner`, column and row, and hands each pixel inside the image to `store`
 /// with its column and row.
-pub fn render_group<C: Count>(
+pub fn render_group<C: Tally>(
     frame: &Frame,
     traversal: &dyn Traverser,
     corner: (u32, u32),

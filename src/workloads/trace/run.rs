@@ -5,7 +5,8 @@ use super::case::TraceCase;
 use super::counting;
 use super::input::TraceInput;
 use super::rays::Config;
-use super::record::{Verification, counter_metrics};
+use super::record::{ByRayType, RAY_TYPES, Verification, counter_metrics};
+use super::simt::Sums;
 use super::verify;
 use super::{Agreement, Built, Selection};
 use crate::camera::View;
@@ -107,6 +108,36 @@ impl<'a> TraceRun<'a> {
         Ok(verdict)
     }
 
+    /// Adds what warps of `width` lanes issue, by the twin; a warning where that is not modelled.
+    fn count_warps(&self, case: &TraceCase, width: u32, verdict: &mut Verdict) -> Result<()> {
+        let (context, views) = (self.input.context, &self.input.path(case)?.views);
+        let verifier = self.input.verifier.borrow();
+        let mut twin = match verifier.twin(self.selection.method(), &*self.built.structure) {
+            Ok(twin) => twin,
+            Err(Error::Refused(refusal)) => {
+                verdict.warnings.push(format!("warps are not counted: {refusal}"));
+                return Ok(());
+            }
+            Err(other) => return Err(other),
+        };
+        let mut sums = ByRayType::<Sums>::default();
+        for view in views {
+            context.check_interrupt()?;
+            match twin.in_warps(case.config, view, case.size, width) {
+                Ok(of_frame) => sums.iter_mut().zip(&of_frame).for_each(|(sum, frame)| *sum = sum.with(frame)),
+                Err(Error::Refused(refusal)) => {
+                    verdict.warnings.push(format!("warps are not counted: {refusal}"));
+                    return Ok(());
+                }
+                Err(other) => return Err(other),
+            }
+        }
+        for (ray, sums) in RAY_TYPES.iter().zip(&sums).filter(|(_, sums)| sums.warps > 0) {
+            verdict.metrics.extend(sums.values().into_iter().map(|(name, value)| Metric::of(ray, &name, value)));
+        }
+        Ok(())
+    }
+
     /// All structures must make the same picture, to the bit where the device computes to the bit. Returns the
     /// reference hash, and the structure that it is of if it differs.
     fn compare_structures(&self, case: &TraceCase, hash: &str) -> (String, Option<String>) {
@@ -185,6 +216,9 @@ impl Run for TraceRun<'_> {
             metrics.retain(|metric| metric.name == "rays"); // nothing else is known
         }
         let mut verdict = Verdict { metrics, ..Verdict::default() };
+        if let Some(width) = case.warp_width {
+            self.count_warps(&case, width, &mut verdict)?;
+        }
         compare_kernels(self.exact, &std::mem::take(&mut self.first_image), &counted.first_image, &mut verdict);
         verdict.warnings.extend(counted.warnings(views.len()));
         Ok(verdict)

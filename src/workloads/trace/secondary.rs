@@ -7,7 +7,7 @@
 use crate::math::Ray;
 use crate::workloads::random::{cosine_direction, unit_vector};
 use crate::workloads::trace::backend::{AMBIENT_RAYS, Config, Size};
-use crate::workloads::trace::count::Count;
+use crate::workloads::trace::count::Tally;
 use crate::workloads::trace::path::{AMBIENT, DIFFUSE, Frame, PRIMARY, Paths, REFLECTED};
 use crate::workloads::trace::shade::Surface;
 use crate::workloads::trace::traverse::{GROUP, Lanes, Traverser, bits};
@@ -17,7 +17,7 @@ use glam::Vec3A;
 const SEED: u32 = 1;
 
 /// Goes on from the primary hits of the group whose top left pixel is `corner`, column and row, to the pixels' colours.
-pub fn shade_primary<C: Count>(
+pub fn shade_primary<C: Tally>(
     frame: &Frame,
     traversal: &dyn Traverser,
     corner: (u32, u32),
@@ -32,7 +32,7 @@ pub fn shade_primary<C: Count>(
 }
 
 /// Light and shadow rays, and the segments that follow in mirrors.
-fn mirrored<C: Count>(frame: &Frame, traversal: &dyn Traverser, paths: &mut Paths<C>, triangle_refs: &Lanes<u32>) {
+fn mirrored<C: Tally>(frame: &Frame, traversal: &dyn Traverser, paths: &mut Paths<C>, triangle_refs: &Lanes<u32>) {
     if !frame.follow_hits(traversal, PRIMARY, paths, triangle_refs) {
         return;
     }
@@ -44,7 +44,7 @@ fn mirrored<C: Count>(frame: &Frame, traversal: &dyn Traverser, paths: &mut Path
 }
 
 /// The share of ambient rays that hit nothing.
-fn ambient<C: Count>(
+fn ambient<C: Tally>(
     frame: &Frame,
     traversal: &dyn Traverser,
     corner: (u32, u32),
@@ -60,7 +60,7 @@ fn ambient<C: Count>(
         bits(paths.alive).for_each(|lane| paths.counters[AMBIENT][lane].ray());
         let rays = rays_above(frame, paths, &surfaces, corner, number);
         let limit = frame.lengths.ambient;
-        let occluded = traversal.any_hits(&rays, limit, paths.alive, &mut paths.counters[AMBIENT]);
+        let occluded = traversal.any_hits(AMBIENT, &rays, limit, paths.alive, &mut paths.counters[AMBIENT]);
         bits(paths.alive & !occluded).for_each(|lane| open[lane] += 1);
     }
     for lane in bits(paths.alive) {
@@ -69,7 +69,7 @@ fn ambient<C: Count>(
 }
 
 /// The colour of the surface that the diffuse ray finds, lit from where the ray comes from.
-fn diffuse<C: Count>(
+fn diffuse<C: Tally>(
     frame: &Frame,
     traversal: &dyn Traverser,
     corner: (u32, u32),
@@ -82,7 +82,7 @@ fn diffuse<C: Count>(
     }
     bits(paths.alive).for_each(|lane| paths.counters[DIFFUSE][lane].ray());
     paths.rays = rays_above(frame, paths, &surfaces, corner, 0);
-    let triangle_refs = traversal.nearest_hits(&paths.rays, paths.alive, &mut paths.counters[DIFFUSE]);
+    let triangle_refs = traversal.nearest_hits(DIFFUSE, &paths.rays, paths.alive, &mut paths.counters[DIFFUSE]);
     let seen = frame.surfaces(DIFFUSE, paths, &triangle_refs);
     for lane in bits(paths.alive) {
         let Some(seen) = &seen[lane] else { continue };

@@ -3,7 +3,7 @@
 
 use crate::math::Ray;
 use crate::workloads::trace::backend::{ByRayType, CountedPixel};
-use crate::workloads::trace::count::Count;
+use crate::workloads::trace::count::Tally;
 use crate::workloads::trace::path::{Frame, PRIMARY, Paths, REFLECTED};
 use crate::workloads::trace::traverse::{GROUP, Lanes, Traverser, bits};
 use glam::Vec3A;
@@ -20,7 +20,7 @@ pub struct Waiting<C> {
     counters: ByRayType<C>,
 }
 
-impl<C: Count> Waiting<C> {
+impl<C: Tally> Waiting<C> {
     fn of(paths: &Paths<C>, lane: usize, place: (u32, u32)) -> Waiting<C> {
         Waiting {
             place,
@@ -35,7 +35,7 @@ impl<C: Count> Waiting<C> {
 
 /// The first pass for the group whose top left pixel is `(column, row)`: hands each pixel inside the image to `store`
 /// with its column and row, and appends the paths that go on to the list.
-pub fn primary_group<C: Count>(
+pub fn primary_group<C: Tally>(
     frame: &Frame,
     traversal: &dyn Traverser,
     (column, row): (u32, u32),
@@ -56,7 +56,7 @@ pub fn primary_group<C: Count>(
 }
 
 /// A further pass for up to 64 paths of a list: their pixels as they are now, and the paths that go on.
-pub fn bounce_group<C: Count>(
+pub fn bounce_group<C: Tally>(
     frame: &Frame,
     traversal: &dyn Traverser,
     waiting: &[Waiting<C>],

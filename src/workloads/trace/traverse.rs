@@ -3,8 +3,9 @@
 
 use crate::math::{MISS, Ray, T_MAX, Vertex};
 use crate::workloads::trace::TriangleRef;
-use crate::workloads::trace::count::{Count, CountOff, Counters};
+use crate::workloads::trace::count::{Count, CountOff, Counters, Tally};
 use crate::workloads::trace::intersect::{TriangleHit, TriangleTest};
+use crate::workloads::trace::simt::Stream;
 use glam::Vec3A;
 
 /// Rays of a work-group.
@@ -50,8 +51,12 @@ pub trait Traverser: Sync {
     /// Counts nothing.
     fn uncounted(&self, search: Search, rays: &Lanes<Ray>, alive: u64) -> Lanes<u32>;
 
-    /// Adds to `counters`.
-    fn counted(&self, search: Search, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<Counters>) -> Lanes<u32>;
+    /// Adds to `counters` of rays of a type.
+    fn counted(&self, of: (usize, Search), rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<Counters>)
+    -> Lanes<u32>;
+
+    /// Appends to `streams`.
+    fn recorded(&self, search: Search, rays: &Lanes<Ray>, alive: u64, streams: &mut Lanes<Stream>) -> Lanes<u32>;
 }
 
 impl<T: Traverse> Traverser for T {
@@ -59,8 +64,18 @@ impl<T: Traverse> Traverser for T {
         find(self, search, rays, alive, &mut [CountOff; GROUP])
     }
 
-    fn counted(&self, search: Search, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<Counters>) -> Lanes<u32> {
+    fn counted(
+        &self,
+        (_, search): (usize, Search),
+        rays: &Lanes<Ray>,
+        alive: u64,
+        counters: &mut Lanes<Counters>,
+    ) -> Lanes<u32> {
         find(self, search, rays, alive, counters)
+    }
+
+    fn recorded(&self, search: Search, rays: &Lanes<Ray>, alive: u64, streams: &mut Lanes<Stream>) -> Lanes<u32> {
+        find(self, search, rays, alive, streams)
     }
 }
 
@@ -79,19 +94,32 @@ fn find<T: Traverse, C: Count>(
 }
 
 impl dyn Traverser + '_ {
-    /// The triangle reference of each ray's nearest hit, or [`MISS`].
-    pub fn nearest_hits<C: Count>(&self, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<C>) -> Lanes<u32> {
-        C::traverse(self, Search::Nearest, rays, alive, counters)
+    /// The triangle reference of each ray's nearest hit, or [`MISS`]. `kind` is the type of the rays.
+    pub fn nearest_hits<C: Tally>(
+        &self,
+        kind: usize,
+        rays: &Lanes<Ray>,
+        alive: u64,
+        counters: &mut Lanes<C>,
+    ) -> Lanes<u32> {
+        C::traverse(self, (kind, Search::Nearest), rays, alive, counters)
     }
 
     /// The same for the primary rays of 8 x 8 pixels in Morton order.
-    pub fn primary_hits<C: Count>(&self, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<C>) -> Lanes<u32> {
-        C::traverse(self, Search::Primary, rays, alive, counters)
+    pub fn primary_hits<C: Tally>(&self, rays: &Lanes<Ray>, alive: u64, counters: &mut Lanes<C>) -> Lanes<u32> {
+        C::traverse(self, (0, Search::Primary), rays, alive, counters)
     }
 
     /// One bit for each ray that hits anything at a distance below `limit`.
-    pub fn any_hits<C: Count>(&self, rays: &Lanes<Ray>, limit: f32, alive: u64, counters: &mut Lanes<C>) -> u64 {
-        let found = C::traverse(self, Search::Any(limit), rays, alive, counters);
+    pub fn any_hits<C: Tally>(
+        &self,
+        kind: usize,
+        rays: &Lanes<Ray>,
+        limit: f32,
+        alive: u64,
+        counters: &mut Lanes<C>,
+    ) -> u64 {
+        let found = C::traverse(self, (kind, Search::Any(limit)), rays, alive, counters);
         set_of(bits(alive).filter(|&lane| found[lane] != MISS))
     }
 }

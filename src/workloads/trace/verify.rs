@@ -146,6 +146,14 @@ impl Verifier {
         Ok(Verifier { scene, cpu: CpuBackend::new(0)?, tree, brute, references: Vec::new() })
     }
 
+    /// The twin of a method on a structure of this scene.
+    ///
+    /// # Errors
+    /// [`crate::Error::Refused`] where there is none.
+    pub fn twin<'a>(&'a self, method: Method, structure: &'a dyn Structure) -> Result<Box<dyn Prepared + 'a>> {
+        self.cpu.prepare(&self.scene, structure, method)
+    }
+
     /// Verifies one frame. With `twin`, hits and counters are also compared with the CPU twin of the same method on
     /// that structure, pixel by pixel (for small images); without, only with the reference image. `exact` demands
     /// agreement to the bit (see [`crate::device::DeviceInfo::agrees_with_twins`]).

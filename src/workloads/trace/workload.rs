@@ -1,10 +1,11 @@
 //! Ray tracing as a workload: its axes, and its plan.
 
-use super::case::TraceCase;
+use super::case::{TraceCase, parse_warp_width};
 use super::gpu::kernels;
 use super::input::TraceInput;
 use super::rays::{self, Config};
 use super::record::{RAY_TYPES, WORKLOAD, variant_of};
+use super::simt::Sums;
 use super::tracer::Decorate;
 use super::{Selection, artifacts, build};
 use crate::camera::CameraPath;
@@ -89,6 +90,13 @@ paths that have not changed.",
             is_flag: true,
             in_label: false,
         },
+        Axis {
+            name: "warp_width",
+            value_name: "N",
+            help: "Also count what warps of N lanes (8, 16, 32, 64) would issue in lockstep, by the twins; comma list",
+            is_flag: true,
+            in_label: false,
+        },
         Axis { name: "frames", value_name: "N", help: "Frames of the camera path", is_flag: false, in_label: false },
     ],
     columns: &[
@@ -152,6 +160,11 @@ paths that have not changed.",
         "diffuse_fallbacks_per_ray",
         "diffuse_skips_per_ray",
         "diffuse_boxes_per_ray",
+        "primary_utilisation",
+        "shadow_utilisation",
+        "reflected_utilisation",
+        "ambient_utilisation",
+        "diffuse_utilisation",
         "build_ms",
         "build_threads",
         "structure_bytes",
@@ -185,6 +198,7 @@ paths that have not changed.",
         ("rt2", include_str!("../../../presets/sweep/rt2.toml")),
         ("rt2-lite", include_str!("../../../presets/sweep/rt2-lite.toml")),
         ("structures", include_str!("../../../presets/sweep/structures.toml")),
+        ("simt", include_str!("../../../presets/sweep/simt.toml")),
     ],
 };
 
@@ -220,6 +234,10 @@ impl Workload for Trace {
         for name in camera_paths.iter().filter(|name| !name.is_empty()) {
             CameraPath::load(name)?;
         }
+        let warp_widths = match part.of("warp_width") {
+            [] => vec![None],
+            widths => parse_list(widths, parse_warp_width)?.into_iter().map(Some).collect(),
+        };
         let mut cases = Vec::new();
         for scene in part.of("scene") {
             let scene = library.scene_time.map_or_else(|| scene.clone(), |time| scene::at_time(scene, time));
@@ -228,9 +246,11 @@ impl Workload for Trace {
                 for &config in &configs {
                     for &size in &sizes {
                         for camera_path in &camera_paths {
-                            let (selection, camera_path) = (selection.clone(), camera_path.clone());
-                            let case = TraceCase { selection, config, size, frames: part.frames, camera_path };
-                            cases.push(case.to_case(&scene));
+                            cases.extend(warp_widths.iter().map(|&warp_width| {
+                                let (selection, camera_path) = (selection.clone(), camera_path.clone());
+                                let frames = part.frames;
+                                TraceCase { selection, config, size, frames, camera_path, warp_width }.to_case(&scene)
+                            }));
                         }
                     }
                 }
@@ -275,7 +295,8 @@ impl Workload for Trace {
             // None where nothing but rays is counted
             let visits = [sum(ray, "inner"), sum(ray, "leaves")];
             let steps = visits.iter().any(Option::is_some).then(|| visits.into_iter().flatten().sum());
-            let counters = row.metrics.iter().filter(|m| m.of.as_deref() == Some(ray) && m.name != "rays");
+            let is_per_ray = |m: &&Metric| m.of.as_deref() == Some(ray) && m.name != "rays" && !Sums::has(&m.name);
+            let counters = row.metrics.iter().filter(is_per_ray);
             let sums = counters.filter_map(|m| Some((m.name.as_str(), m.value.integer()?)));
             for (name, sum) in steps.map(|steps| ("steps", steps)).into_iter().chain(sums) {
                 let name = format!("{name}_per_ray");
@@ -284,6 +305,11 @@ impl Workload for Trace {
                 if config.is_some_and(|config| config.added_ray_type() == index) {
                     derived.push(Metric::new(&name, per_ray(sum)));
                 }
+            }
+            let width = row.key.axis("warp_width").parse().ok();
+            let warps = Sums::read(|name| sum(ray, name));
+            if let Some(share) = width.zip(warps).and_then(|(width, sums)| sums.utilisation(width)) {
+                derived.push(Metric::of(ray, "utilisation", round(share, 4)));
             }
         }
         derived

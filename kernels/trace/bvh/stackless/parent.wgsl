@@ -31,6 +31,7 @@ fn after(ray: Ray, index: u32) -> u32 {
 fn next_leaf(ray: Ray, t: f32, start: u32) -> Place {
     var index = start;
     while (index != MISS) {
+        mark_turn();
         let node = read_node(index);
         if (index != 0u) {
             count_box_test();

@@ -14,11 +14,15 @@
 //! kernel; they are no estimate of its time, and the instructions of a GPU after its driver are others.
 
 mod count;
+mod regions;
+
+pub use regions::EVENT_MARKS;
 
 use super::super::kernel::Source;
 use crate::error::{Error, Result};
+use std::collections::BTreeMap;
 use wgpu::naga;
-use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
+use wgpu::naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
 /// Counts of instructions by class, and sizes. The rules are those of the module `device::vulkan::cost`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -89,6 +93,21 @@ impl Source {
     /// [`Error::Device`] with file and line for text that is not valid WGSL or has no such entry point (a mistake in
     /// `kernels/`).
     pub fn cost(&self) -> Result<KernelCost> {
+        let (module, info, main) = self.parse()?;
+        Ok(count::count(&module, &info, main))
+    }
+
+    /// Instructions of the entry point `main` by the events that its parts are about: `ray` once a ray, the others once
+    /// an event. The rules are those of the module `device::vulkan::cost::regions`.
+    ///
+    /// # Errors
+    /// As [`Source::cost`].
+    pub fn event_costs(&self) -> Result<BTreeMap<&'static str, f64>> {
+        let (module, info, main) = self.parse()?;
+        Ok(regions::regions(&module, &info, main))
+    }
+
+    fn parse(&self) -> Result<(naga::Module, ModuleInfo, usize)> {
         let wrong = |location: Option<naga::SourceLocation>, problem: &dyn std::fmt::Display| {
             let place = location.map_or("the kernel".to_owned(), |location| self.locate(location.line_number as usize));
             Error::Device(format!("{place}: {problem}"))
@@ -100,7 +119,7 @@ impl Source {
             .map_err(|error| wrong(error.location(&self.text), &with_causes(error.as_inner())))?;
         let main = module.entry_points.iter().position(|entry| entry.name == "main");
         let main = main.ok_or_else(|| wrong(None, &"there is no entry point main"))?;
-        Ok(count::count(&module, &info, main))
+        Ok((module, info, main))
     }
 }
 

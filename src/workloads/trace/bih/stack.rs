@@ -8,6 +8,12 @@ use crate::workloads::trace::algorithm::{Algorithm, Traversal};
 use crate::workloads::trace::bih::{BUILDER, Bih as Tree, BihNode, KIND};
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::options::GROUP;
+use crate::workloads::trace::simt::{
+    Event::{Leaf, Pop, Step, Test},
+    Lockstep,
+    Part::One,
+    choice, maybe, repeat,
+};
 use crate::workloads::trace::traverse::{Best, STACK_SIZE, TraverseIndependent, Triangles};
 
 /// A stack per ray in a hierarchy of intervals.
@@ -26,8 +32,15 @@ pub static STACK: Traversal = Traversal {
     kernel: "trace/bih/stack.wgsl",
     structure: &KIND,
     twin: Some(|input| Ok(input.with(BihStack { triangles: input.triangles(), tree: input.structure()? }))),
+    lockstep: Some(|_| LOCKSTEP),
     ..Traversal::INDEPENDENT
 };
+
+/// How its lanes wait for each other.
+const LOCKSTEP: Lockstep = Lockstep::apart(&[repeat(&[choice(&[
+    maybe(&[One(Leaf), repeat(&[One(Test)]), repeat(&[One(Pop)])]),
+    maybe(&[One(Step), repeat(&[One(Pop)])]),
+])])]);
 
 struct BihStack<'a> {
     triangles: Triangles<'a>,

@@ -5,6 +5,7 @@ use crate::workloads::trace::algorithm::{Algorithm, Traversal};
 use crate::workloads::trace::brute::{BUILDER, KIND};
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::options::GROUP;
+use crate::workloads::trace::simt::{Event::Test, Lockstep, Part::One, repeat};
 use crate::workloads::trace::traverse::{Best, TraverseIndependent, Triangles};
 
 /// Brute force, the reference of all others.
@@ -23,8 +24,12 @@ pub static SCAN: Traversal = Traversal {
     kernel: "trace/brute/scan.wgsl",
     structure: &KIND,
     twin: Some(|input| Ok(input.with(Brute { triangles: input.triangles() }))),
+    lockstep: Some(|_| LOCKSTEP),
     ..Traversal::INDEPENDENT
 };
+
+/// How its lanes wait for each other.
+const LOCKSTEP: Lockstep = Lockstep::apart(&[repeat(&[One(Test)])]);
 
 /// See the module.
 pub struct Brute<'a> {

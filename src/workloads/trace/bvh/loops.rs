@@ -13,6 +13,12 @@ use crate::workloads::trace::count::Count;
 use crate::workloads::trace::cpu::TwinInput;
 use crate::workloads::trace::options::{Axis, Kind, OptionInfo};
 use crate::workloads::trace::selection::Selection;
+use crate::workloads::trace::simt::{
+    Event::{Leaf, Pop, Step, Test, Turn},
+    Lockstep, Mark,
+    Part::One,
+    maybe, repeat,
+};
 use crate::workloads::trace::traverse::{Best, TraverseIndependent};
 
 /// Which loops a ray runs.
@@ -65,6 +71,37 @@ pub(super) fn slots(parameters: &Parameters) -> &'static [(&'static str, &'stati
         Form::WhileWhile => &[("loop", "trace/bvh/while_while.wgsl")],
         Form::IfIf => &[("loop", "trace/bvh/if_if.wgsl")],
         Form::Speculative => &[("loop", "trace/bvh/speculative.wgsl")],
+    }
+}
+
+/// How lanes wait for each other in while-while, also where threads are persistent.
+pub(in crate::workloads::trace) const WHILE_WHILE: Lockstep = Lockstep::apart(&[repeat(&[
+    repeat(&[One(Step), repeat(&[One(Pop)])]),
+    maybe(&[One(Leaf), repeat(&[One(Test)]), repeat(&[One(Pop)])]),
+])]);
+
+const IF_IF: Lockstep = Lockstep::apart(&[
+    maybe(&[One(Leaf)]),
+    repeat(&[
+        maybe(&[One(Step), repeat(&[One(Pop)]), maybe(&[One(Leaf)])]),
+        maybe(&[One(Test), repeat(&[One(Pop)]), maybe(&[One(Leaf)])]),
+    ]),
+]);
+
+const SPECULATIVE: Lockstep = Lockstep::apart(&[repeat(&[
+    repeat(&[One(Step), repeat(&[One(Pop)])]),
+    maybe(&[One(Turn), repeat(&[One(Pop)]), repeat(&[One(Step), repeat(&[One(Pop)])])]),
+    maybe(&[One(Leaf), repeat(&[One(Test)])]),
+    maybe(&[One(Leaf), repeat(&[One(Test)])]),
+    repeat(&[One(Pop)]),
+])]);
+
+/// How lanes wait for each other.
+pub(super) fn lockstep(parameters: &Parameters) -> Lockstep {
+    match Form::from(parameters) {
+        Form::WhileWhile => WHILE_WHILE,
+        Form::IfIf => IF_IF,
+        Form::Speculative => SPECULATIVE,
     }
 }
 
@@ -138,6 +175,7 @@ impl TraverseIndependent for Speculative<'_> {
             if postponed == EMPTY {
                 return best.triangle_ref;
             }
+            count.mark(Mark::Turn);
             reference = stack.pop(t, count);
             reference = search.down.walk_to_leaf(&wide, t, reference, &mut stack, count);
             for leaf in [postponed, reference].into_iter().filter(|&leaf| leaf != EMPTY) {

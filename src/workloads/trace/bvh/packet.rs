@@ -10,6 +10,12 @@ use crate::workloads::trace::bvh::{Bvh as Tree, BvhNode, KIND, TOP_DOWN};
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::cpu::TwinInput;
 use crate::workloads::trace::options::{Axis, Kind, OptionInfo, PACKET};
+use crate::workloads::trace::simt::{
+    Event::{Leaf, Pop, Step, Test, Vote},
+    Lockstep, Mark,
+    Part::{All, One},
+    choice, maybe, repeat,
+};
 use crate::workloads::trace::traverse::{Best, GROUP, Lanes, STACK_SIZE, Traverse, Triangles, bits};
 
 /// The BVH of the thesis.
@@ -32,8 +38,15 @@ pub static SHARED_STACK: Traversal = Traversal {
         Parameters::of(&[original_vote, widened::parameter(s)])
     },
     twin: Some(|input| Ok(input.with(Bvh::of(&input)?))),
+    lockstep: Some(|_| LOCKSTEP),
     ..Traversal::COOPERATIVE
 };
+
+/// How its lanes wait for each other.
+const LOCKSTEP: Lockstep = Lockstep::together(&[repeat(&[
+    choice(&[maybe(&[One(Leaf), repeat(&[One(Test)])]), maybe(&[All(Step), maybe(&[All(Vote)])])]),
+    maybe(&[All(Pop)]),
+])]);
 
 /// In the original, rays that hit neither child vote as well, by which box begins first on their line.
 const VOTE: OptionInfo = OptionInfo::new(
@@ -135,6 +148,7 @@ impl<'a> Bvh<'a> {
         let (left, right) = (left.reference(), right.reference());
         if any_both || (any_left && any_right) {
             let (first, second) = if votes > 0 { (right, left) } else { (left, right) };
+            bits(alive).for_each(|lane| counters[lane].mark(Mark::Vote));
             packet.stack[packet.depth] = second;
             packet.depth += 1;
             packet.go(first);

@@ -46,6 +46,7 @@ pub static STACK: Traversal = Traversal {
     slots: loops::slots,
     twin: Some(loops::twin),
     leaf_order: true,
+    lockstep: Some(loops::lockstep),
     ..Traversal::INDEPENDENT
 };
 

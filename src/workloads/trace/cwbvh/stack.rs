@@ -14,6 +14,12 @@ use crate::workloads::trace::bvh::stack::{EMPTY, overlaps};
 use crate::workloads::trace::bvh::widened::{self, Widening};
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::options::GROUP;
+use crate::workloads::trace::simt::{
+    Event::{Leaf, Pop, Step, Test},
+    Lockstep,
+    Part::One,
+    maybe, repeat,
+};
 use crate::workloads::trace::structure::finite;
 use crate::workloads::trace::traverse::{Best, STACK_SIZE, TraverseIndependent, Triangles};
 use glam::Vec3A;
@@ -42,8 +48,13 @@ pub static STACK: Traversal = Traversal {
         Ok(input.with(CwbvhStack { triangles: input.triangles(), tree, root, widening }))
     }),
     leaf_order: true,
+    lockstep: Some(|_| LOCKSTEP),
     ..Traversal::INDEPENDENT
 };
+
+/// How its lanes wait for each other.
+const LOCKSTEP: Lockstep =
+    Lockstep::apart(&[repeat(&[One(Step), repeat(&[One(Leaf)]), repeat(&[One(Test)]), maybe(&[One(Pop)])])]);
 
 struct CwbvhStack<'a> {
     triangles: Triangles<'a>,

@@ -9,6 +9,12 @@ use crate::workloads::trace::count::Count;
 use crate::workloads::trace::grid::dda::Grid;
 use crate::workloads::trace::grid::{BUILDER, KIND};
 use crate::workloads::trace::options::PACKET;
+use crate::workloads::trace::simt::{
+    Event::{Step, Test},
+    Lockstep,
+    Part::{All, Shared},
+    repeat,
+};
 use crate::workloads::trace::traverse::{Best, TraverseIndependent};
 
 /// The grid with shared triangle tests.
@@ -27,8 +33,12 @@ pub static COOP: Traversal = Traversal {
     kernel: "trace/grid/coop.wgsl",
     structure: &KIND,
     twin: Some(|input| Ok(input.with(GridCoop { grid: Grid::of(&input)? }))),
+    lockstep: Some(|_| LOCKSTEP),
     ..Traversal::COOPERATIVE
 };
+
+/// How its lanes wait for each other.
+const LOCKSTEP: Lockstep = Lockstep::together(&[repeat(&[All(Step), Shared(Test)])]);
 
 /// See the module.
 pub struct GridCoop<'a> {

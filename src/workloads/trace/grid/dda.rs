@@ -9,6 +9,12 @@ use crate::workloads::trace::cpu::TwinInput;
 use crate::workloads::trace::grid::octants::{Octant, octants};
 use crate::workloads::trace::grid::{self, BUILDER, KIND};
 use crate::workloads::trace::options::GROUP;
+use crate::workloads::trace::simt::{
+    Event::{Step, Test},
+    Lockstep,
+    Part::One,
+    repeat,
+};
 use crate::workloads::trace::traverse::{Best, TraverseIndependent, Triangles};
 use glam::{IVec3, Vec3A};
 
@@ -28,8 +34,12 @@ pub static DDA: Traversal = Traversal {
     kernel: "trace/grid/dda.wgsl",
     structure: &KIND,
     twin: Some(|input| Ok(input.with(Grid::of(&input)?))),
+    lockstep: Some(|_| LOCKSTEP),
     ..Traversal::INDEPENDENT
 };
+
+/// How its lanes wait for each other.
+const LOCKSTEP: Lockstep = Lockstep::apart(&[repeat(&[One(Step), repeat(&[One(Test)])])]);
 
 /// See the module.
 pub struct Grid<'a> {

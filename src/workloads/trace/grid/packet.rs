@@ -10,6 +10,12 @@ use crate::workloads::trace::count::Count;
 use crate::workloads::trace::grid::dda::Grid;
 use crate::workloads::trace::grid::{BUILDER, KIND};
 use crate::workloads::trace::options::PACKET;
+use crate::workloads::trace::simt::{
+    Event::{Step, Test, Turn},
+    Lockstep, Mark,
+    Part::{All, One},
+    repeat,
+};
 use crate::workloads::trace::traverse::{Best, GROUP, Lanes, Traverse, bits, set_of};
 use glam::{IVec3, Vec3A};
 
@@ -29,8 +35,12 @@ pub static SLICES: Traversal = Traversal {
     kernel: "trace/grid/packet.wgsl",
     structure: &KIND,
     twin: Some(|input| Ok(input.with(GridPacket { grid: Grid::of(&input)? }))),
+    lockstep: Some(|_| LOCKSTEP),
     ..Traversal::COOPERATIVE
 };
+
+/// How its lanes wait for each other.
+const LOCKSTEP: Lockstep = Lockstep::together(&[repeat(&[All(Turn), repeat(&[One(Step), repeat(&[One(Test)])])])]);
 
 /// See the module.
 pub struct GridPacket<'a> {
@@ -165,6 +175,7 @@ impl Traverse for GridPacket<'_> {
         let March { axes: [major, u, v], forward, slices: (first, last) } = self.plan(rays, &intervals, searching);
         for step in 0..=last - first {
             let slice = if forward { first + step } else { last - step };
+            bits(searching).for_each(|lane| counters[lane].mark(Mark::Turn));
             // Which cells of the slice the rays touch
             let (mut across, mut along) = (NO_CELLS, NO_CELLS);
             let mut touching = 0u64;

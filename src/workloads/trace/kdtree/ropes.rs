@@ -12,6 +12,12 @@ use crate::workloads::trace::algorithm::{Parameter, Parameters, Traversal};
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::kdtree::rope_layout::{KIND, NO_ROPE, RopeLeaf, RopeTree};
 use crate::workloads::trace::kdtree::search;
+use crate::workloads::trace::simt::{
+    Event::{Fallback, Leaf, Pop, Restart, Rope, Step, Test},
+    Lockstep,
+    Part::One,
+    choice, maybe, repeat,
+};
 use crate::workloads::trace::traverse::{Best, TraverseIndependent, Triangles};
 
 /// From leaf to leaf.
@@ -21,8 +27,21 @@ pub static ROPES: Traversal = Traversal {
     parameters: |_| Parameters::of(&[("SHORT_STACK", Parameter::Word(0)), ("PUSHDOWN", Parameter::Flag(true))]),
     slots: |_| &[("nodes", "trace/kdtree/rope_nodes.wgsl"), ("short_stack", "trace/kdtree/short_stack_private.wgsl")],
     twin: Some(|input| Ok(input.with(KdRopes::new(input.triangles(), input.structure()?)))),
+    lockstep: Some(|_| LOCKSTEP),
     ..Traversal::INDEPENDENT
 };
+
+/// How its lanes wait for each other.
+const LOCKSTEP: Lockstep = Lockstep::apart(&[
+    repeat(&[repeat(&[One(Step)]), maybe(&[One(Leaf), repeat(&[One(Test)]), maybe(&[One(Rope)])])]),
+    maybe(&[
+        One(Fallback),
+        repeat(&[choice(&[
+            maybe(&[One(Leaf), repeat(&[One(Test)]), choice(&[maybe(&[One(Pop)]), maybe(&[One(Restart)])])]),
+            maybe(&[One(Step)]),
+        ])]),
+    ]),
+]);
 
 /// See the module.
 pub struct KdRopes<'a> {

@@ -15,6 +15,12 @@ use crate::workloads::trace::kdtree::stack::STACK;
 use crate::workloads::trace::kdtree::{BUILDER, KIND, KdNode, KdTree as Tree};
 use crate::workloads::trace::options::{Axis, GROUP, Kind, OptionInfo};
 use crate::workloads::trace::selection::Selection;
+use crate::workloads::trace::simt::{
+    Event::{Leaf, Pop, Restart, Step, Test},
+    Lockstep,
+    Part::One,
+    choice, maybe, repeat,
+};
 use crate::workloads::trace::traverse::{Best, TraverseIndependent, Triangles};
 
 /// The kd-tree of the thesis.
@@ -42,8 +48,15 @@ pub static SEARCH: Traversal = Traversal {
         false => &[("nodes", "trace/kdtree/nodes.wgsl"), ("short_stack", "trace/kdtree/short_stack_workgroup.wgsl")],
     },
     twin: Some(twin),
+    lockstep: Some(|_| LOCKSTEP),
     ..Traversal::INDEPENDENT
 };
+
+/// How its lanes wait for each other.
+const LOCKSTEP: Lockstep = Lockstep::apart(&[repeat(&[choice(&[
+    maybe(&[One(Leaf), repeat(&[One(Test)]), choice(&[maybe(&[One(Pop)]), maybe(&[One(Restart)])])]),
+    maybe(&[One(Step)]),
+])])]);
 
 /// Most entries of a short stack.
 const MAX_SHORT_STACK: u32 = 32;

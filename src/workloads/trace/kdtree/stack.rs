@@ -4,6 +4,12 @@ use crate::math::{MISS, Ray};
 use crate::workloads::trace::algorithm::Traversal;
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::kdtree::{KIND, KdNode, KdTree};
+use crate::workloads::trace::simt::{
+    Event::{Leaf, Pop, Step, Test},
+    Lockstep,
+    Part::One,
+    maybe, repeat,
+};
 use crate::workloads::trace::traverse::{Best, STACK_SIZE, TraverseIndependent, Triangles};
 
 /// Depth first, near child first.
@@ -12,8 +18,13 @@ pub static STACK: Traversal = Traversal {
     structure: &KIND,
     slots: |_| &[("nodes", "trace/kdtree/nodes.wgsl")],
     twin: Some(|input| Ok(input.with(KdStack::new(input.triangles(), input.structure()?)))),
+    lockstep: Some(|_| LOCKSTEP),
     ..Traversal::INDEPENDENT
 };
+
+/// How its lanes wait for each other.
+const LOCKSTEP: Lockstep =
+    Lockstep::apart(&[repeat(&[repeat(&[One(Step)]), maybe(&[One(Leaf), repeat(&[One(Test)]), maybe(&[One(Pop)])])])]);
 
 /// See the module.
 pub struct KdStack<'a> {

@@ -10,6 +10,12 @@ use crate::workloads::trace::bvh::stack::{EMPTY, LEAF, leaf_triangle_refs, overl
 use crate::workloads::trace::bvh::widened::{self, Widening};
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::cpu::Twin;
+use crate::workloads::trace::simt::{
+    Event::{Leaf, Pop, Step, Test},
+    Lockstep,
+    Part::One,
+    choice, maybe, repeat,
+};
 use crate::workloads::trace::traverse::{Best, STACK_SIZE, TraverseIndependent, Triangles};
 use glam::Vec3A;
 
@@ -20,8 +26,15 @@ pub static OCTANTS4: Traversal = Traversal {
     parameters: |s| Parameters::of(&[("WIDTH", Parameter::Word(4)), widened::parameter(s)]),
     twin: Some(TWIN),
     leaf_order: true,
+    lockstep: Some(|_| LOCKSTEP),
     ..Traversal::INDEPENDENT
 };
+
+/// How its lanes wait for each other.
+const LOCKSTEP: Lockstep = Lockstep::apart(&[repeat(&[
+    choice(&[maybe(&[One(Leaf), repeat(&[One(Test)])]), maybe(&[One(Step)])]),
+    maybe(&[One(Pop)]),
+])]);
 
 /// In trees of eight.
 pub static OCTANTS8: Traversal = Traversal {

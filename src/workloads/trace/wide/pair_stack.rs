@@ -3,6 +3,7 @@
 
 use super::{PAIRS, QUANTISED, Slot, Wide};
 use crate::workloads::trace::algorithm::{Algorithm, Traversal};
+use crate::workloads::trace::bvh::loops::WHILE_WHILE;
 use crate::workloads::trace::bvh::stack::{CULL, InPairs, Pairs, StackSearch, parameters};
 use crate::workloads::trace::options::GROUP;
 use glam::Vec3A;
@@ -28,6 +29,7 @@ pub static PAIR_STACK: Traversal = Traversal {
         Ok(input.with(StackSearch::new(&input, InPairs(tree))))
     }),
     leaf_order: true,
+    lockstep: Some(|_| WHILE_WHILE),
     ..Traversal::INDEPENDENT
 };
 

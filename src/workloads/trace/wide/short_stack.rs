@@ -16,6 +16,12 @@ use crate::workloads::trace::bvh::widened::{self, Widening};
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::cpu::Twin;
 use crate::workloads::trace::selection::Selection;
+use crate::workloads::trace::simt::{
+    Event::{Leaf, Pop, Restart, Step, Test},
+    Lockstep,
+    Part::One,
+    choice, maybe, repeat,
+};
 use crate::workloads::trace::traverse::{Best, STACK_SIZE, TraverseIndependent, Triangles};
 use crate::workloads::trace::wide::collapse::MAX_WIDTH;
 use glam::Vec3A;
@@ -30,8 +36,15 @@ pub static SHORT4: Traversal = Traversal {
     parameters: |s| parameters(s, 4),
     twin: Some(TWIN),
     leaf_order: true,
+    lockstep: Some(|_| LOCKSTEP),
     ..Traversal::INDEPENDENT
 };
+
+/// How its lanes wait for each other.
+const LOCKSTEP: Lockstep = Lockstep::apart(&[repeat(&[
+    choice(&[maybe(&[One(Leaf), repeat(&[One(Test)])]), maybe(&[One(Step)])]),
+    choice(&[maybe(&[One(Pop)]), maybe(&[One(Restart)])]),
+])]);
 
 /// In trees of eight.
 pub static SHORT8: Traversal = Traversal { structure: &EIGHT, parameters: |s| parameters(s, 8), ..SHORT4 };

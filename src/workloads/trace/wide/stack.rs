@@ -9,6 +9,7 @@ use super::short_stack::{MAX_ENTRIES, SHORT4, SHORT8};
 use super::{BVH4_BUILDER, BVH8_BUILDER, EIGHT, FOUR, Wide, has_octants};
 use crate::math::{Ray, ray_box};
 use crate::workloads::trace::algorithm::{Algorithm, Parameter, Traversal};
+use crate::workloads::trace::bvh::loops::WHILE_WHILE;
 use crate::workloads::trace::bvh::stack::{CULL, Down, EMPTY, LEAF, Stack, StackSearch, overlaps, parameters};
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::cpu::Twin;
@@ -85,6 +86,7 @@ pub static STACK4: Traversal = Traversal {
     parameters: |s| parameters(s).and("WIDTH", Parameter::Word(4)),
     twin: Some(TWIN),
     leaf_order: true,
+    lockstep: Some(|_| WHILE_WHILE),
     ..Traversal::INDEPENDENT
 };
 

@@ -10,6 +10,12 @@ use crate::workloads::trace::algorithm::{Parameters, Traversal};
 use crate::workloads::trace::bvh::stack::{EMPTY, LEAF, leaf_triangle_refs, overlaps};
 use crate::workloads::trace::bvh::widened::{self, Widening};
 use crate::workloads::trace::count::Count;
+use crate::workloads::trace::simt::{
+    Event::{Leaf, Rope, Step, Test, Turn},
+    Lockstep, Mark,
+    Part::One,
+    maybe, repeat,
+};
 use crate::workloads::trace::traverse::{Best, TraverseIndependent, Triangles};
 
 /// Nearer sibling, then the other one, then back to the parent.
@@ -22,8 +28,15 @@ pub static PARENT: Traversal = Traversal {
         let widening = Widening::around(&input, tree.bvh.nodes[0].corners());
         Ok(input.with(ByParent { triangles: input.triangles(), tree, widening }))
     }),
+    lockstep: Some(|_| LOCKSTEP),
     ..Traversal::INDEPENDENT
 };
+
+/// How its lanes wait for each other.
+const LOCKSTEP: Lockstep = Lockstep::apart(&[repeat(&[
+    repeat(&[One(Turn), repeat(&[One(Rope)]), maybe(&[One(Step)])]),
+    maybe(&[One(Leaf), repeat(&[One(Test)]), repeat(&[One(Rope)])]),
+])]);
 
 struct ByParent<'a> {
     triangles: Triangles<'a>,
@@ -58,6 +71,7 @@ impl ByParent<'_> {
     #[inline(always)]
     fn next_leaf<C: Count>(&self, ray: &Ray, t: f32, mut index: u32, count: &mut C) -> (u32, u32) {
         while index != MISS {
+            count.mark(Mark::Turn);
             let node = &self.tree.bvh.nodes[index as usize];
             if index != 0 {
                 count.box_test();

@@ -7,6 +7,12 @@ use crate::workloads::trace::algorithm::{Parameters, Traversal};
 use crate::workloads::trace::bvh::stack::{LEAF, leaf_triangle_refs, overlaps};
 use crate::workloads::trace::bvh::widened::{self, Widening};
 use crate::workloads::trace::count::Count;
+use crate::workloads::trace::simt::{
+    Event::{Leaf, Restart, Step, Test},
+    Lockstep,
+    Part::One,
+    maybe, repeat,
+};
 use crate::workloads::trace::traverse::{Best, STACK_SIZE, TraverseIndependent, Triangles};
 
 /// From the root to each leaf.
@@ -19,8 +25,15 @@ pub static TRAIL: Traversal = Traversal {
         let widening = Widening::around(&input, tree.bvh.nodes[0].corners());
         Ok(input.with(ByTrail { triangles: input.triangles(), tree, widening }))
     }),
+    lockstep: Some(|_| LOCKSTEP),
     ..Traversal::INDEPENDENT
 };
+
+/// How its lanes wait for each other.
+const LOCKSTEP: Lockstep = Lockstep::apart(&[repeat(&[
+    repeat(&[One(Step), maybe(&[One(Restart)])]),
+    maybe(&[One(Leaf), repeat(&[One(Test)]), maybe(&[One(Restart)])]),
+])]);
 
 struct ByTrail<'a> {
     triangles: Triangles<'a>,

@@ -1,0 +1,178 @@
+//! GPUs as files: `gpus/NAME.toml`, or a user's.
+
+use crate::error::{Error, Result};
+use crate::guard;
+use crate::names as texts;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::path::Path;
+use toml::Spanned;
+
+/// The GPUs that are part of the program.
+const KNOWN: [(&str, &str); 4] = [
+    ("8600gt", include_str!("../../../../../gpus/8600gt.toml")),
+    ("gtx280", include_str!("../../../../../gpus/gtx280.toml")),
+    ("rtx4090", include_str!("../../../../../gpus/rtx4090.toml")),
+    ("h200", include_str!("../../../../../gpus/h200.toml")),
+];
+
+/// A GPU, as far as the model knows it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gpu {
+    /// What people call it.
+    pub name: String,
+    /// Processors that hold warps.
+    pub multiprocessors: u32,
+    /// Of the processors, in MHz.
+    pub clock_mhz: f64,
+    /// Cycles in which a multiprocessor issues one instruction of a warp.
+    pub cycles_per_instruction: f64,
+    /// Lanes of a warp.
+    pub warp_width: u32,
+    /// Most resident warps of a multiprocessor.
+    pub max_warps: u32,
+    /// Work-group memory of a multiprocessor.
+    pub shared_bytes: u64,
+    /// By which published times its orders were validated; empty for none.
+    pub validated: String,
+    /// Resident warps by structure, and `default`; empty where they follow from work-group memory.
+    pub resident_warps: BTreeMap<String, u32>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    name: String,
+    multiprocessors: Spanned<u32>,
+    clock_mhz: Spanned<f64>,
+    cycles_per_instruction: Spanned<f64>,
+    warp_width: Spanned<u32>,
+    max_warps: Spanned<u32>,
+    shared_bytes: Spanned<u64>,
+    #[serde(default)]
+    validated: String,
+    #[serde(default)]
+    resident_warps: BTreeMap<String, Spanned<u32>>,
+}
+
+/// Names of the GPUs that are part of the program.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    KNOWN.iter().map(|(name, _)| *name)
+}
+
+impl Gpu {
+    /// A GPU of the program by its name, or one of a file.
+    ///
+    /// # Errors
+    /// [`Error::Input`]: no such GPU, or a file that is none, with its line.
+    pub fn load(name: &str) -> Result<Gpu> {
+        if let Some((_, text)) = KNOWN.iter().find(|(known, _)| known.eq_ignore_ascii_case(name)) {
+            return Gpu::parse(name, text);
+        }
+        let path = &*texts::file(name);
+        if path.extension().is_none() {
+            let hint = format!("there are {}; or give a TOML file", names().collect::<Vec<_>>().join(", "));
+            return Err(Error::argument("--gpu", format!("no GPU {name:?}"), hint));
+        }
+        guard::read(path);
+        let text = std::fs::read_to_string(path)
+            .map_err(|e| Error::file(path, None, format!("cannot read: {e}"), "give a GPU's TOML file"))?;
+        Gpu::parse(name, &text)
+    }
+
+    fn parse(name: &str, text: &str) -> Result<Gpu> {
+        let text = text.trim_start_matches('\u{feff}');
+        let wrong = |span: Option<std::ops::Range<usize>>, problem: String| {
+            let line = span.map(|span| 1 + text[..span.start.min(text.len())].matches('\n').count());
+            Error::file(Path::new(name), line, problem, "gpus/gtx280.toml is an example")
+        };
+        let file: File = toml::from_str(text).map_err(|e| wrong(e.span(), e.message().replace('\n', ", ")))?;
+        let positive = |key: &str, value: &Spanned<u32>| match *value.get_ref() {
+            0 => Err(wrong(Some(value.span()), format!("{key} = 0, which must be at least 1"))),
+            number => Ok(number),
+        };
+        let number = |key: &str, value: &Spanned<f64>| match *value.get_ref() {
+            number if number > 0.0 && number.is_finite() => Ok(number),
+            number => Err(wrong(Some(value.span()), format!("{key} = {number}, which must be above 0"))),
+        };
+        let resident = |(name, warps): (&String, &Spanned<u32>)| Ok((name.clone(), positive(name, warps)?));
+        Ok(Gpu {
+            multiprocessors: positive("multiprocessors", &file.multiprocessors)?,
+            clock_mhz: number("clock_mhz", &file.clock_mhz)?,
+            cycles_per_instruction: number("cycles_per_instruction", &file.cycles_per_instruction)?,
+            warp_width: positive("warp_width", &file.warp_width)?,
+            max_warps: positive("max_warps", &file.max_warps)?,
+            shared_bytes: match *file.shared_bytes.get_ref() {
+                0 => return Err(wrong(Some(file.shared_bytes.span()), "shared_bytes = 0".into())),
+                bytes => bytes,
+            },
+            resident_warps: file.resident_warps.iter().map(resident).collect::<Result<_>>()?,
+            name: file.name,
+            validated: file.validated,
+        })
+    }
+
+    /// Resident warps of a multiprocessor: those of the file for a structure, or as many as the work-group memory of
+    /// the kernel leaves room for, in whole work-groups of `group` invocations; at least one. Registers are not
+    /// modelled.
+    pub fn resident_warps(&self, structure: &str, group: u32, workgroup_bytes: u64) -> u32 {
+        if let Some(&warps) = self.resident_warps.get(structure).or_else(|| self.resident_warps.get("default")) {
+            return warps;
+        }
+        let of_group = group.div_ceil(self.warp_width).max(1);
+        let groups = u64::from(self.max_warps / of_group);
+        let fitting = self.shared_bytes.checked_div(workgroup_bytes).unwrap_or(groups);
+        (groups.min(fitting) as u32 * of_group).max(1)
+    }
+
+    /// Milliseconds in which it can at best issue so many instructions of warps.
+    pub fn issue_ms(&self, instructions: f64) -> f64 {
+        let per_second = f64::from(self.multiprocessors) * self.clock_mhz * 1e6 / self.cycles_per_instruction;
+        instructions / per_second * 1e3
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GOOD: &str = "name = \"x\"\nmultiprocessors = 2\nclock_mhz = 1000\ncycles_per_instruction = 4\nwarp_width = 32\n\
+                        max_warps = 24\nshared_bytes = 16384\n";
+
+    #[test]
+    fn known_gpus_are_valid() {
+        for (name, text) in KNOWN {
+            let gpu = Gpu::parse(name, text).unwrap();
+            assert!(gpu.warp_width == 32 && !gpu.name.is_empty(), "{name}");
+            assert_eq!(gpu.validated.is_empty(), gpu.resident_warps.is_empty(), "{name}");
+        }
+        assert_eq!(Gpu::load("GTX280").unwrap().name, "GeForce GTX 280");
+    }
+
+    #[test]
+    fn wrong_files_are_one_error_with_a_line() {
+        let wrong = |text: &str| Gpu::parse("x.toml", text).unwrap_err().to_string();
+        for (from, to, words) in [
+            ("max_warps", "most_warps", "x.toml:6: "),
+            ("clock_mhz = 1000", "clock_mhz = 0", "x.toml:3: clock_mhz = 0"),
+            ("clock_mhz = 1000", "clock_mhz = -1.5", "x.toml:3: clock_mhz = -1.5"),
+            ("multiprocessors = 2", "multiprocessors = 0", "x.toml:2: multiprocessors = 0"),
+            ("shared_bytes = 16384", "shared_bytes = \"all\"", "x.toml:7: "),
+            ("shared_bytes = 16384\n", "shared_bytes = 1\n[resident_warps]\ngrid = 0\n", "x.toml:9: grid = 0"),
+        ] {
+            let message = wrong(&GOOD.replace(from, to));
+            assert!(message.contains(words), "{message}");
+        }
+        assert!(wrong("name = ").contains("x.toml:1"));
+        assert!(Gpu::load("gtx999").unwrap_err().to_string().contains("gtx280"));
+    }
+
+    #[test]
+    fn work_group_memory_limits_resident_warps() {
+        let gpu = Gpu::parse("x", GOOD).unwrap();
+        let warps = |bytes| gpu.resident_warps("bvh", 64, bytes);
+        assert_eq!([warps(0), warps(100), warps(4096), warps(16_384), warps(20_000)], [24, 24, 8, 2, 1]);
+        // 10^9 cycles a second in two multiprocessors, a quarter of an instruction each
+        assert!((gpu.issue_ms(5e8) - 1000.0).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,15 @@
+//! What issued work means on a GPU: a lower bound of a frame's time, and an order of structures.
+//!
+//! The issue bound is `cycles per instruction * issued instructions / (multiprocessors * clock)`: no GPU is faster, and
+//! latency, memory and divergence of memory come on top. For an order, issued instructions are divided by the resident
+//! warps, which hide latency. Nothing is fitted.
+
+mod gpu;
+mod order;
+mod run;
+mod weights;
+
+pub use gpu::{Gpu, names};
+pub use order::{CLOSE, Modelled, Ranked, rank};
+pub use run::{sums_of, tables};
+pub use weights::{EVENT_FACTOR, Weights};

@@ -1,0 +1,127 @@
+//! The order of structures, and how sure it is.
+
+use super::super::stream::{EVENTS, Event};
+use super::super::sums::Sums;
+use super::gpu::Gpu;
+use super::weights::{EVENT_FACTOR, Weights};
+
+/// Structures whose work per resident warp differs by less are too close to be told apart.
+pub const CLOSE: f64 = 1.15;
+
+/// Draws of weights for the band.
+const DRAWS: usize = 200;
+
+/// What is known of a structure's row.
+#[derive(Clone, Debug)]
+pub struct Modelled {
+    /// Name with its options.
+    pub name: String,
+    /// What warps issue in all frames, by ray type.
+    pub sums: Vec<Sums>,
+    /// Of its kernel.
+    pub weights: Weights,
+    /// Resident warps of a multiprocessor.
+    pub warps: u32,
+    /// Frames that were counted.
+    pub frames: usize,
+}
+
+/// A structure in the order of a GPU.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ranked {
+    /// Its place in what was given.
+    pub index: usize,
+    /// The least time of a frame, on average, in milliseconds.
+    pub bound_ms: f64,
+    /// Instructions over resident warps, as a multiple of the first one's.
+    pub relative: f64,
+    /// The same with 5 % and 95 % of all draws of weights within a factor of [`EVENT_FACTOR`].
+    pub band: (f64, f64),
+    /// True if it is too close to the one before it.
+    pub close: bool,
+}
+
+impl Modelled {
+    fn work(&self, weights: &Weights) -> f64 {
+        weights.instructions(&self.sums) / f64::from(self.warps)
+    }
+}
+
+/// Structures in the order of their work per resident warp, least first.
+pub fn rank(gpu: &Gpu, rows: &[Modelled]) -> Vec<Ranked> {
+    let works: Vec<f64> = rows.iter().map(|row| row.work(&row.weights)).collect();
+    let mut order: Vec<usize> = (0..rows.len()).collect();
+    order.sort_by(|&a, &b| works[a].total_cmp(&works[b]));
+    let Some(&first) = order.first() else { return Vec::new() };
+    let mut random = draws();
+    // Of each row, its work as a multiple of the first one's, for each draw. A step is another one in each kernel;
+    // what else there is, such as a triangle test, is alike in all of them, and is drawn together.
+    let mut drawn: Vec<Vec<f64>> = vec![Vec::with_capacity(DRAWS); rows.len()];
+    for _ in 0..DRAWS {
+        let common: [f64; EVENTS.len() + 1] = std::array::from_fn(|_| random());
+        let works: Vec<f64> = rows
+            .iter()
+            .map(|row| {
+                let mut factors = common;
+                factors[1 + Event::Step as usize] = random();
+                row.work(&row.weights.scaled(&factors))
+            })
+            .collect();
+        drawn.iter_mut().zip(&works).for_each(|(drawn, work)| drawn.push(work / works[first]));
+    }
+    let mut before: Option<f64> = None;
+    let ranked = order.into_iter().map(|index| {
+        drawn[index].sort_by(f64::total_cmp);
+        let close = before.is_some_and(|before| works[index] < before * CLOSE);
+        before = Some(works[index]);
+        Ranked {
+            index,
+            bound_ms: gpu.issue_ms(rows[index].weights.instructions(&rows[index].sums))
+                / rows[index].frames.max(1) as f64,
+            relative: works[index] / works[first],
+            band: (drawn[index][DRAWS / 20], drawn[index][DRAWS - 1 - DRAWS / 20]),
+            close,
+        }
+    });
+    ranked.collect()
+}
+
+/// Factors from 1 / [`EVENT_FACTOR`] to [`EVENT_FACTOR`], the same ones each time.
+fn draws() -> impl FnMut() -> f64 {
+    let mut state = 1_u32;
+    move || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        let share = f64::from(state >> 8) / f64::from(1_u32 << 24);
+        EVENT_FACTOR.powf(2.0 * share - 1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(name: &str, steps: u64, tests: u64, warps: u32) -> Modelled {
+        let mut sums = Sums { warps: 100, ..Sums::default() };
+        sums.issued[Event::Step as usize] = steps;
+        sums.issued[Event::Test as usize] = tests;
+        let weights = Weights::by_hand(10.0, &[(Event::Step, 20.0), (Event::Test, 60.0)]);
+        Modelled { name: name.into(), sums: vec![sums], weights, warps, frames: 2 }
+    }
+
+    #[test]
+    fn less_work_per_resident_warp_is_first() {
+        let gpu = Gpu::load("gtx280").unwrap();
+        let rows = [row("a", 1000, 1000, 8), row("b", 1000, 1000, 16), row("c", 1100, 1000, 16), row("d", 9000, 0, 8)];
+        let ranked = rank(&gpu, &rows);
+        assert_eq!(ranked.iter().map(|r| r.index).collect::<Vec<_>>(), [1, 2, 0, 3]);
+        assert_eq!(ranked.iter().map(|r| r.close).collect::<Vec<_>>(), [false, true, false, false]);
+        assert_eq!((ranked[0].relative, ranked[0].band), (1.0, (1.0, 1.0)));
+        // The same sums with half of the warps: only what a step costs in each kernel matters
+        assert!((ranked[2].relative - 2.0).abs() < 1e-12);
+        let width = |ranked: &Ranked| ranked.band.1 / ranked.band.0;
+        assert!(ranked[2].band.0 < 2.0 && ranked[2].band.1 > 2.0 && width(&ranked[2]) < width(&ranked[3]));
+        // 81,000 instructions of two frames
+        assert!((ranked[0].bound_ms - gpu.issue_ms(81_000.0) / 2.0).abs() < 1e-12);
+        assert!(rank(&gpu, &[]).is_empty());
+    }
+}

@@ -1,0 +1,109 @@
+//! What a ray does, in its order.
+
+use crate::workloads::trace::count::{Count, Counters};
+
+/// Something that a warp issues.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Event {
+    /// An inner node is visited, or a cell of a grid.
+    Step,
+    /// A leaf is visited.
+    Leaf,
+    /// A triangle is tested.
+    Test,
+    /// An entry is taken from a stack.
+    Pop,
+    /// A search begins anew at or below the root.
+    Restart,
+    /// A rope or a link to a parent is followed.
+    Rope,
+    /// A search by ropes is given up.
+    Fallback,
+    /// A packet chooses between two children.
+    Vote,
+    /// A turn of a loop that visits no node of its own: a box is tested, a leaf is put off, a packet has its next cell.
+    Turn,
+}
+
+/// Names of the events, in the order of [`Event`].
+pub const EVENTS: [&str; 9] = ["step", "leaf", "test", "pop", "restart", "rope", "fallback", "vote", "turn"];
+
+/// What a twin reports that no counter counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mark {
+    /// [`Event::Vote`].
+    Vote,
+    /// [`Event::Turn`].
+    Turn,
+}
+
+impl Event {
+    /// Its bit in a set of events.
+    pub const fn bit(self) -> u16 {
+        1 << self as u16
+    }
+}
+
+/// A ray's events and counters.
+#[derive(Clone, Debug, Default)]
+pub struct Stream {
+    /// What the ray has counted.
+    pub counters: Counters,
+    /// In their order.
+    pub events: Vec<Event>,
+}
+
+impl Stream {
+    /// A ray that goes on counting.
+    pub fn from(counters: Counters) -> Stream {
+        Stream { counters, events: Vec::new() }
+    }
+}
+
+impl Count for Stream {
+    fn ray(&mut self) {
+        self.counters.ray();
+    }
+    fn inner(&mut self) {
+        self.counters.inner();
+        self.events.push(Event::Step);
+    }
+    fn leaf(&mut self) {
+        self.counters.leaf();
+        self.events.push(Event::Leaf);
+    }
+    fn test(&mut self) {
+        self.counters.test();
+        self.events.push(Event::Test);
+    }
+    fn pop(&mut self) {
+        self.counters.pop();
+        self.events.push(Event::Pop);
+    }
+    fn restart(&mut self) {
+        self.counters.restart();
+        self.events.push(Event::Restart);
+    }
+    fn rope(&mut self) {
+        self.counters.rope();
+        self.events.push(Event::Rope);
+    }
+    fn fallback(&mut self) {
+        self.counters.fallback();
+        self.events.push(Event::Fallback);
+    }
+    // A part of a visit
+    fn skip(&mut self) {
+        self.counters.skip();
+    }
+    fn box_test(&mut self) {
+        self.counters.box_test();
+    }
+    fn mark(&mut self, mark: Mark) {
+        self.events.push(match mark {
+            Mark::Vote => Event::Vote,
+            Mark::Turn => Event::Turn,
+        });
+    }
+}

@@ -1,0 +1,59 @@
+//! Counts of warps.
+
+use super::stream::{EVENTS, Event};
+
+/// What warps issued, summed over traversals.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sums {
+    /// Traversals by a warp that has a live ray; by every warp of a work-group whose rays go together.
+    pub warps: u64,
+    /// By event, how often warps issued it.
+    pub issued: [u64; EVENTS.len()],
+    /// By event, the lanes that took part.
+    pub lanes: [u64; EVENTS.len()],
+}
+
+impl Sums {
+    /// Adds an event that `warps` of them issue, for so many lanes.
+    pub(super) fn add(&mut self, event: Event, warps: u64, lanes: u64) {
+        self.issued[event as usize] += warps;
+        self.lanes[event as usize] += lanes;
+    }
+
+    /// The sums of both.
+    #[must_use]
+    pub fn with(&self, other: &Sums) -> Sums {
+        Sums {
+            warps: self.warps + other.warps,
+            issued: std::array::from_fn(|i| self.issued[i] + other.issued[i]),
+            lanes: std::array::from_fn(|i| self.lanes[i] + other.lanes[i]),
+        }
+    }
+
+    /// Name and value of each count: `warps`, and of each event that occurs `issued_EVENT` and `lanes_EVENT`.
+    pub fn values(&self) -> Vec<(String, u64)> {
+        let of_event = |(i, event): (usize, &&str)| {
+            [(format!("issued_{event}"), self.issued[i]), (format!("lanes_{event}"), self.lanes[i])]
+        };
+        let occurs = |(i, _): &(usize, &&str)| self.issued[*i] > 0;
+        let events = EVENTS.iter().enumerate().filter(occurs).flat_map(of_event);
+        std::iter::once(("warps".to_owned(), self.warps)).chain(events).collect()
+    }
+
+    /// Reads what [`Sums::values`] wrote; `None` where there is no number of warps.
+    pub fn read(get: impl Fn(&str) -> Option<u64>) -> Option<Sums> {
+        let of = |what: &str| EVENTS.map(|event| get(&format!("{what}_{event}")).unwrap_or(0));
+        get("warps").map(|warps| Sums { warps, issued: of("issued"), lanes: of("lanes") })
+    }
+
+    /// True for a name that [`Sums::values`] gives.
+    pub fn has(name: &str) -> bool {
+        name == "warps" || name.starts_with("issued_") || name.starts_with("lanes_")
+    }
+
+    /// The share of lanes that take part in what warps of `width` lanes issue, 0 to 1; `None` where nothing is issued.
+    pub fn utilisation(&self, width: u32) -> Option<f64> {
+        let (issued, lanes) = (self.issued.iter().sum::<u64>(), self.lanes.iter().sum::<u64>());
+        (issued > 0).then(|| lanes as f64 / (issued * u64::from(width)) as f64)
+    }
+}

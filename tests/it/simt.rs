@@ -1,0 +1,4 @@
+//! What warps issue: hand-made events with known counts, every traversal that is modelled, and the thesis of 2009.
+
+mod streams;
+mod twins;

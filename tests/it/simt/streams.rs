@@ -1,0 +1,134 @@
+//! Hand-made events.
+
+use rtbench::workloads::trace::simt::{
+    Event::{self, *},
+    Group, Lockstep,
+    Part::{All, One, Shared},
+    Stream, Sums, choice, maybe, repeat, replay,
+};
+use rtbench::workloads::trace::traverse::Lanes;
+
+const WHILE_WHILE: Lockstep = Lockstep::apart(&[repeat(&[
+    repeat(&[One(Step), repeat(&[One(Pop)])]),
+    maybe(&[One(Leaf), repeat(&[One(Test)]), repeat(&[One(Pop)])]),
+])]);
+
+const IF_IF: Lockstep = Lockstep::apart(&[repeat(&[choice(&[
+    maybe(&[One(Leaf), repeat(&[One(Test)]), maybe(&[One(Pop)])]),
+    maybe(&[One(Step)]),
+])])]);
+
+const PACKET: Lockstep = Lockstep::together(&[repeat(&[
+    choice(&[maybe(&[One(Leaf), repeat(&[One(Test)])]), maybe(&[All(Step), maybe(&[All(Vote)])])]),
+    maybe(&[All(Pop)]),
+])]);
+
+fn streams(lanes: &[&[Event]]) -> Lanes<Stream> {
+    std::array::from_fn(|lane| Stream {
+        events: lanes.get(lane).map_or(Vec::new(), |e| e.to_vec()),
+        ..Stream::default()
+    })
+}
+
+fn issue(lockstep: &Lockstep, group: Group, alive: u64, lanes: &[&[Event]]) -> Sums {
+    let mut sums = Sums::default();
+    replay(lockstep, group, alive, &streams(lanes), &mut sums).unwrap();
+    sums
+}
+
+/// Issued and lanes of an event.
+fn of(sums: &Sums, event: Event) -> (u64, u64) {
+    (sums.issued[event as usize], sums.lanes[event as usize])
+}
+
+const FOUR: Group = Group { size: 64, width: 4 };
+
+#[test]
+fn lanes_wait_in_while_while() {
+    // The first lane goes three steps down, the second one; both loops of tests take as many turns as the longer one
+    let lanes: [&[Event]; 3] = [&[Step, Step, Step, Leaf, Test], &[Step, Leaf, Test, Test, Test, Pop], &[]];
+    let sums = issue(&WHILE_WHILE, FOUR, 0b111, &lanes);
+    assert_eq!(sums.warps, 1);
+    assert_eq!([of(&sums, Step), of(&sums, Leaf), of(&sums, Test), of(&sums, Pop)], [(3, 4), (1, 2), (3, 4), (1, 1)]);
+    assert!((sums.utilisation(4).unwrap() - 11.0 / 32.0).abs() < 1e-12);
+    // Pops within a step's turn belong to it
+    let lanes: [&[Event]; 2] = [&[Step, Pop, Pop, Step, Leaf, Test], &[Step, Step, Pop, Leaf, Test]];
+    let sums = issue(&WHILE_WHILE, FOUR, 0b11, &lanes);
+    assert_eq!([of(&sums, Step), of(&sums, Pop), of(&sums, Leaf)], [(2, 4), (3, 3), (1, 2)]);
+}
+
+#[test]
+fn lanes_at_different_branches_are_issued_apart() {
+    let lanes: [&[Event]; 2] = [&[Step, Leaf, Test, Pop, Step], &[Leaf, Test, Test, Pop, Leaf, Test]];
+    // Turns: step and leaf; leaf (first lane) and leaf (second lane) together; step
+    let sums = issue(&IF_IF, FOUR, 0b11, &lanes);
+    assert_eq!([of(&sums, Step), of(&sums, Leaf), of(&sums, Test), of(&sums, Pop)], [(2, 2), (2, 3), (3, 4), (2, 2)]);
+}
+
+#[test]
+fn warps_go_alone_or_together() {
+    // Lanes 0 and 4 are in two warps of four; the second ray is occluded after its first leaf
+    let mut lanes: [&[Event]; 5] = [&[]; 5];
+    lanes[0] = &[Step, Vote, Leaf, Test, Test, Pop, Leaf, Test];
+    lanes[4] = &[Step, Vote, Leaf, Test];
+    let group = Group { size: 8, width: 4 };
+    let sums = issue(&PACKET, group, 0b1_0001, &lanes);
+    assert_eq!(sums.warps, 2);
+    assert_eq!([of(&sums, Step), of(&sums, Vote), of(&sums, Pop)], [(2, 2), (2, 2), (2, 1)]);
+    assert_eq!([of(&sums, Leaf), of(&sums, Test)], [(3, 3), (4, 4)], "leaves by warps with a live lane");
+    lanes[0] = &[Step, Leaf, Test];
+    lanes[4] = &[Step, Step, Step, Leaf, Test];
+    let sums = issue(&WHILE_WHILE, group, 0b1_0001, &lanes);
+    assert_eq!((sums.warps, of(&sums, Step), of(&sums, Leaf)), (2, (4, 4), (2, 2)));
+}
+
+#[test]
+fn shared_tests_are_divided_by_the_group() {
+    const COOP: Lockstep = Lockstep::together(&[repeat(&[All(Step), Shared(Test)])]);
+    let nine = [Step, Test, Test, Test, Test, Test, Test, Test, Test, Test];
+    let lanes: [&[Event]; 3] = [&nine, &nine, &[Step]];
+    // 18 tests by 8 invocations in two warps: three turns each
+    let sums = issue(&COOP, Group { size: 8, width: 4 }, 0b111, &lanes);
+    assert_eq!([of(&sums, Step), of(&sums, Test)], [(2, 3), (6, 18)]);
+}
+
+#[test]
+fn a_wrong_reconvergence_is_noticed() {
+    let fits = |lockstep: &Lockstep, lanes: &[&[Event]]| {
+        replay(lockstep, FOUR, u64::MAX, &streams(lanes), &mut Sums::default())
+    };
+    assert_eq!(fits(&WHILE_WHILE, &[&[Step, Leaf, Test, Pop, Leaf]]), Ok(()));
+    let message = fits(&WHILE_WHILE, &[&[], &[Step, Leaf, Test, Restart]]).unwrap_err();
+    assert!(message.contains("event 3 of lane 1, Restart, has no place"), "{message}");
+    // A loop of tests in front of the leaf, and no loop over pops
+    const WRONG: Lockstep =
+        Lockstep::apart(&[repeat(&[repeat(&[One(Step)]), repeat(&[One(Test)]), maybe(&[One(Leaf)])])]);
+    assert!(fits(&WRONG, &[&[Step, Leaf, Test, Pop]]).is_err());
+    const ONE_POP: Lockstep = Lockstep::apart(&[repeat(&[
+        repeat(&[One(Step)]),
+        maybe(&[One(Leaf), repeat(&[One(Test)]), maybe(&[One(Pop)])]),
+    ])]);
+    assert!(fits(&ONE_POP, &[&[Step, Leaf, Test, Pop, Pop, Step]]).is_err());
+}
+
+#[test]
+fn a_warp_without_a_live_lane_does_nothing() {
+    let lanes: [&[Event]; 1] = [&[Step, Leaf, Test]];
+    assert_eq!(issue(&WHILE_WHILE, FOUR, 0, &lanes), Sums::default());
+    assert_eq!(issue(&PACKET, FOUR, 0, &lanes), Sums::default());
+    // A ray that is not alive is not replayed
+    let sums = issue(&WHILE_WHILE, FOUR, 0b10, &lanes);
+    assert_eq!((sums.warps, of(&sums, Step)), (1, (0, 0)));
+}
+
+#[test]
+fn sums_are_read_as_they_are_written() {
+    let lanes: [&[Event]; 2] = [&[Step, Leaf, Test], &[Step]];
+    let sums = issue(&WHILE_WHILE, FOUR, 0b11, &lanes);
+    let values = sums.values();
+    assert_eq!(values[0], ("warps".to_owned(), 1));
+    assert!(values.iter().all(|(name, _)| Sums::has(name)) && !Sums::has("rays"));
+    let read = Sums::read(|name| values.iter().find(|(known, _)| known == name).map(|(_, value)| *value));
+    assert_eq!(read, Some(sums));
+    assert_eq!(Sums::read(|_| None), None);
+}

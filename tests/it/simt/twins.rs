@@ -1,0 +1,135 @@
+//! The twins' own events.
+
+use rtbench::camera::CameraPath;
+use rtbench::scene::{Scene, load};
+use rtbench::workloads::trace::backend::{Backend, Config, Counters, RAY_TYPES, Size};
+use rtbench::workloads::trace::simt::{EVENTS, Sums};
+use rtbench::workloads::trace::{CpuBackend, Selection, algorithms};
+
+/// Not a multiple of the pixels of a work-group.
+const SIZE: Size = Size { width: 68, height: 60 };
+
+/// What warps of `width` lanes issue in the first frame, and what its rays count, by ray type.
+fn counted(
+    cpu: &CpuBackend,
+    scene: &Scene,
+    selection: &Selection,
+    config: Config,
+    width: u32,
+) -> ([Sums; RAY_TYPES.len()], Vec<[Counters; RAY_TYPES.len()]>) {
+    let built = selection.build(scene, 0).unwrap();
+    let mut prepared = cpu.prepare(scene, &*built.structure, selection.method()).unwrap();
+    let view = CameraPath::for_scene(scene, true).views(scene, Some(1)).unwrap().remove(0);
+    let sums = prepared.in_warps(config, &view, SIZE, width).unwrap();
+    let mut pixels = Vec::new();
+    prepared.counted(config, &view, SIZE, &mut |_, band| pixels.extend(band.iter().map(|p| p.counters))).unwrap();
+    (sums, pixels)
+}
+
+/// Every traversal that is modelled, with every form of its loops.
+const SELECTIONS: [&str; 26] = [
+    "brute",
+    "grid",
+    "grid-coop",
+    "grid-packet",
+    "kdtree",
+    "kdtree:stack=1",
+    "kdtree:search=restart",
+    "kdtree:search=pushdown",
+    "kdtree:search=stack",
+    "kdtree:search=ropes",
+    "bih",
+    "bvh",
+    "bvh:vote=original",
+    "bvh:packet=8x4",
+    "bvh-stack",
+    "bvh-stack:cull=off",
+    "bvh-stack:loop=if-if",
+    "bvh-stack:loop=persistent",
+    "bvh-stack:loop=speculative",
+    "bvh-quantised",
+    "bvh4",
+    "bvh8:stack=short,entries=2",
+    "bvh8:order=octant",
+    "cwbvh",
+    "bvh-stackless",
+    "bvh-stackless:search=trail",
+];
+
+fn selections() -> Vec<Selection> {
+    SELECTIONS.map(|text| Selection::parse(text).unwrap_or_else(|error| panic!("{text}: {error}"))).into()
+}
+
+#[test]
+fn all_traversals_with_twins_are_modelled_but_packets_of_subgroups() {
+    let modelled: Vec<_> = selections().iter().map(|selection| selection.method().traversal).collect();
+    for algorithm in algorithms() {
+        let traversal = Selection::parse(algorithm.name).unwrap().method().traversal;
+        let expected = traversal.twin.is_some() && algorithm.name != "bvh-subgroup";
+        assert_eq!(traversal.lockstep.is_some(), expected, "{}", algorithm.name);
+        assert!(!expected || modelled.contains(&traversal) || algorithm.name == "bvh8", "{}", algorithm.name);
+    }
+}
+
+#[test]
+fn warps_of_one_lane_count_what_rays_count() {
+    let cpu = CpuBackend::new(2).unwrap();
+    let scene = load("hall:triangles=15000").unwrap();
+    for selection in selections() {
+        for config in [Config::PSR, Config::AO, Config::DIFFUSE] {
+            let (sums, pixels) = counted(&cpu, &scene, &selection, config, 1);
+            let of = |kind: usize, counter: fn(&Counters) -> u32| -> u64 {
+                pixels.iter().map(|counters| u64::from(counter(&counters[kind]))).sum()
+            };
+            for (kind, sums) in sums.iter().enumerate() {
+                let counters: [fn(&Counters) -> u32; 7] =
+                    [|c| c.inner, |c| c.leaves, |c| c.tests, |c| c.pops, |c| c.restarts, |c| c.ropes, |c| c.fallbacks];
+                let expected = counters.map(|counter| of(kind, counter));
+                let name = format!("{} {config:?} {}", selection.full_name(), RAY_TYPES[kind]);
+                assert_eq!(sums.lanes[..7], expected, "{name}");
+                // Where barriers keep a group together, all of its warps issue
+                if !selection.method().traversal.cooperative {
+                    assert_eq!((sums.issued, sums.warps), (sums.lanes, of(kind, |c| c.rays)), "{name}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn wider_warps_issue_less_for_the_same_lanes() {
+    let scene = load("stadium:triangles=8000").unwrap();
+    let (one, two) = (CpuBackend::new(1).unwrap(), CpuBackend::new(2).unwrap());
+    for selection in selections() {
+        let name = selection.full_name();
+        let by_width = [8, 16, 32, 64].map(|width| counted(&two, &scene, &selection, Config::PSR, width).0);
+        for (sums, width) in by_width.iter().zip([8, 16, 32, 64]) {
+            for (event, (&issued, &lanes)) in sums.iter().flat_map(|s| s.issued.iter().zip(&s.lanes)).enumerate() {
+                let event = EVENTS[event % EVENTS.len()];
+                assert!(issued * width >= lanes, "{name}, {width} lanes: {event} {issued} {lanes}");
+                assert!((issued > 0) == (lanes > 0), "{name}, {width} lanes: {event} {issued} {lanes}");
+            }
+        }
+        for pair in by_width.windows(2) {
+            for (narrow, wide) in pair[0].iter().zip(&pair[1]) {
+                assert_eq!(narrow.lanes, wide.lanes, "{name}");
+                assert!(narrow.issued.iter().zip(&wide.issued).all(|(a, b)| a >= b), "{name}: {narrow:?} {wide:?}");
+            }
+        }
+        assert_eq!(counted(&one, &scene, &selection, Config::PSR, 32).0, by_width[2], "{name}: threads");
+    }
+}
+
+#[test]
+fn what_is_not_modelled_is_refused() {
+    let cpu = CpuBackend::new(1).unwrap();
+    let scene = load("scan:triangles=1000").unwrap();
+    let view = CameraPath::for_scene(&scene, true).views(&scene, Some(1)).unwrap().remove(0);
+    for (text, words) in [("bvh-subgroup", "not modelled"), ("bvh-stack:group=32x1", "32x1")] {
+        let selection = Selection::parse(text).unwrap();
+        let built = selection.build(&scene, 0).unwrap();
+        let mut prepared = cpu.prepare(&scene, &*built.structure, selection.method()).unwrap();
+        let error = prepared.in_warps(Config::P, &view, SIZE, 32).unwrap_err().to_string();
+        assert!(error.contains(words), "{text}: {error}");
+    }
+}
