@@ -1,4 +1,5 @@
 //! What warps issue: hand-made events with known counts, every traversal that is modelled, and the thesis of 2009.
 
+mod published;
 mod streams;
 mod twins;

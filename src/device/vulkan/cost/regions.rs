@@ -20,8 +20,8 @@ use wgpu::naga::{
 };
 
 /// Names of marks. Where a part has several, it is about the first of them.
-pub const EVENT_MARKS: [&str; 10] =
-    ["ray", "turn", "inner", "leaf", "test", "restart", "rope", "fallback", "vote", "pop"];
+pub const EVENT_MARKS: [&str; 11] =
+    ["ray", "turn", "inner", "leaf", "test", "restart", "rope", "fallback", "vote", "pop", "box_test"];
 
 /// Instructions of each mark, on average over the places that have it.
 pub(super) fn regions(module: &Module, info: &ModuleInfo, entry: usize) -> BTreeMap<&'static str, f64> {

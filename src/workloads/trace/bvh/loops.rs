@@ -14,7 +14,7 @@ use crate::workloads::trace::cpu::TwinInput;
 use crate::workloads::trace::options::{Axis, Kind, OptionInfo};
 use crate::workloads::trace::selection::Selection;
 use crate::workloads::trace::simt::{
-    Event::{Leaf, Pop, Step, Test, Turn},
+    Event::{Child, Leaf, Pop, Step, Test, Turn},
     Lockstep, Mark,
     Part::One,
     maybe, repeat,
@@ -74,9 +74,10 @@ pub(super) fn slots(parameters: &Parameters) -> &'static [(&'static str, &'stati
     }
 }
 
-/// How lanes wait for each other in while-while, also where threads are persistent.
+/// How lanes wait for each other in while-while, also where threads are persistent. Nodes of several children have a
+/// loop over these.
 pub(in crate::workloads::trace) const WHILE_WHILE: Lockstep = Lockstep::apart(&[repeat(&[
-    repeat(&[One(Step), repeat(&[One(Pop)])]),
+    repeat(&[One(Step), repeat(&[One(Child)]), repeat(&[One(Pop)])]),
     maybe(&[One(Leaf), repeat(&[One(Test)]), repeat(&[One(Pop)])]),
 ])]);
 

@@ -15,7 +15,7 @@ use crate::workloads::trace::bvh::widened::{self, Widening};
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::options::GROUP;
 use crate::workloads::trace::simt::{
-    Event::{Leaf, Pop, Step, Test},
+    Event::{Child, Leaf, Pop, Step, Test},
     Lockstep,
     Part::One,
     maybe, repeat,
@@ -53,8 +53,12 @@ pub static STACK: Traversal = Traversal {
 };
 
 /// How its lanes wait for each other.
-const LOCKSTEP: Lockstep =
-    Lockstep::apart(&[repeat(&[One(Step), repeat(&[One(Leaf)]), repeat(&[One(Test)]), maybe(&[One(Pop)])])]);
+const LOCKSTEP: Lockstep = Lockstep::apart(&[repeat(&[
+    One(Step),
+    repeat(&[One(Child), maybe(&[One(Leaf)])]),
+    repeat(&[One(Test)]),
+    maybe(&[One(Pop)]),
+])]);
 
 struct CwbvhStack<'a> {
     triangles: Triangles<'a>,

@@ -24,10 +24,12 @@ pub enum Event {
     Vote,
     /// A turn of a loop that visits no node of its own: a box is tested, a leaf is put off, a packet has its next cell.
     Turn,
+    /// A child's box is tested, in a loop over children.
+    Child,
 }
 
 /// Names of the events, in the order of [`Event`].
-pub const EVENTS: [&str; 9] = ["step", "leaf", "test", "pop", "restart", "rope", "fallback", "vote", "turn"];
+pub const EVENTS: [&str; 10] = ["step", "leaf", "test", "pop", "restart", "rope", "fallback", "vote", "turn", "child"];
 
 /// What a twin reports that no counter counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -99,6 +101,11 @@ impl Count for Stream {
     }
     fn box_test(&mut self) {
         self.counters.box_test();
+        self.events.push(Event::Child);
+    }
+    // A part of a visit: no loop
+    fn box_tests(&mut self, tests: u32) {
+        (0..tests).for_each(|_| self.counters.box_test());
     }
     fn mark(&mut self, mark: Mark) {
         self.events.push(match mark {

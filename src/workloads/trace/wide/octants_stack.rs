@@ -11,7 +11,7 @@ use crate::workloads::trace::bvh::widened::{self, Widening};
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::cpu::Twin;
 use crate::workloads::trace::simt::{
-    Event::{Leaf, Pop, Step, Test},
+    Event::{Child, Leaf, Pop, Step, Test},
     Lockstep,
     Part::One,
     choice, maybe, repeat,
@@ -32,7 +32,7 @@ pub static OCTANTS4: Traversal = Traversal {
 
 /// How its lanes wait for each other.
 const LOCKSTEP: Lockstep = Lockstep::apart(&[repeat(&[
-    choice(&[maybe(&[One(Leaf), repeat(&[One(Test)])]), maybe(&[One(Step)])]),
+    choice(&[maybe(&[One(Leaf), repeat(&[One(Test)])]), maybe(&[One(Step), repeat(&[One(Child)])])]),
     maybe(&[One(Pop)]),
 ])]);
 

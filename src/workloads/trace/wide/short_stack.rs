@@ -17,7 +17,7 @@ use crate::workloads::trace::count::Count;
 use crate::workloads::trace::cpu::Twin;
 use crate::workloads::trace::selection::Selection;
 use crate::workloads::trace::simt::{
-    Event::{Leaf, Pop, Restart, Step, Test},
+    Event::{Child, Leaf, Pop, Restart, Step, Test},
     Lockstep,
     Part::One,
     choice, maybe, repeat,
@@ -42,7 +42,7 @@ pub static SHORT4: Traversal = Traversal {
 
 /// How its lanes wait for each other.
 const LOCKSTEP: Lockstep = Lockstep::apart(&[repeat(&[
-    choice(&[maybe(&[One(Leaf), repeat(&[One(Test)])]), maybe(&[One(Step)])]),
+    choice(&[maybe(&[One(Leaf), repeat(&[One(Test)])]), maybe(&[One(Step), repeat(&[One(Child)])])]),
     choice(&[maybe(&[One(Pop)]), maybe(&[One(Restart)])]),
 ])]);
 

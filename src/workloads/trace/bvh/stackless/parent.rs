@@ -11,7 +11,7 @@ use crate::workloads::trace::bvh::stack::{EMPTY, LEAF, leaf_triangle_refs, overl
 use crate::workloads::trace::bvh::widened::{self, Widening};
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::simt::{
-    Event::{Leaf, Rope, Step, Test, Turn},
+    Event::{Child, Leaf, Rope, Step, Test, Turn},
     Lockstep, Mark,
     Part::One,
     maybe, repeat,
@@ -34,7 +34,7 @@ pub static PARENT: Traversal = Traversal {
 
 /// How its lanes wait for each other.
 const LOCKSTEP: Lockstep = Lockstep::apart(&[repeat(&[
-    repeat(&[One(Turn), repeat(&[One(Rope)]), maybe(&[One(Step)])]),
+    repeat(&[One(Turn), maybe(&[One(Child)]), repeat(&[One(Rope)]), maybe(&[One(Step)])]),
     maybe(&[One(Leaf), repeat(&[One(Test)]), repeat(&[One(Rope)])]),
 ])]);
 
