@@ -112,7 +112,7 @@ impl<'a> TraceRun<'a> {
     fn count_warps(&self, case: &TraceCase, width: u32, verdict: &mut Verdict) -> Result<()> {
         let (context, views) = (self.input.context, &self.input.path(case)?.views);
         let verifier = self.input.verifier.borrow();
-        let mut twin = match verifier.twin(self.selection.method(), &*self.built.structure) {
+        let mut twin = match verifier.cpu.prepare(&verifier.scene, &*self.built.structure, self.selection.method()) {
             Ok(twin) => twin,
             Err(Error::Refused(refusal)) => {
                 verdict.warnings.push(format!("warps are not counted: {refusal}"));

@@ -121,8 +121,8 @@ struct Reference {
 
 /// Verifies all configurations of one scene; keeps the references it has computed.
 pub struct Verifier {
-    scene: Arc<Scene>,
-    cpu: CpuBackend,
+    pub(super) scene: Arc<Scene>,
+    pub(super) cpu: CpuBackend,
     tree: Arc<Built>,
     brute: brute::Brute,
     references: Vec<Reference>,
@@ -144,14 +144,6 @@ impl Verifier {
     pub fn new(scene: Arc<Scene>, tree: Arc<Built>) -> Result<Self> {
         let brute = brute::build::build(&scene)?;
         Ok(Verifier { scene, cpu: CpuBackend::new(0)?, tree, brute, references: Vec::new() })
-    }
-
-    /// The twin of a method on a structure of this scene.
-    ///
-    /// # Errors
-    /// [`crate::Error::Refused`] where there is none.
-    pub fn twin<'a>(&'a self, method: Method, structure: &'a dyn Structure) -> Result<Box<dyn Prepared + 'a>> {
-        self.cpu.prepare(&self.scene, structure, method)
     }
 
     /// Verifies one frame. With `twin`, hits and counters are also compared with the CPU twin of the same method on

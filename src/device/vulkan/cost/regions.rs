@@ -3,13 +3,13 @@
 //! Kernels call functions `count_EVENT` (empty where nothing is counted) where a traversal does something that is
 //! counted, `mark_EVENT` where a replay in warps needs to know more, and `begin_ray` where a ray sets out. Such a call
 //! marks the smallest block, function or loop around it: instructions belong to the innermost one that has a mark
-//! outside of its inner loops; where that has several marks, to the first one of [`EVENT_MARKS`] among them. What is executed
-//! once an event is so told from what is executed once a ray.
+//! outside of its inner loops; where that has several marks, to the first one of [`EVENT_MARKS`] among them. What is
+//! executed once an event is so told from what is executed once a ray.
 //!
 //! Instructions are those of a scalar machine: an operation on a vector counts once for each component, a read or write
 //! of memory once for each 16 bytes; functions count wherever they are called; private variables are registers, unless
-//! an index selects an element. Of branches without a mark the shorter one counts, and a loop without a mark not at all:
-//! the counts are the least that is issued. [`of_binary`] and [`of_math`] have what takes several instructions.
+//! an index selects an element. Of branches without a mark the shorter one counts, and a loop without a mark not at
+//! all: the counts are the least that is issued. [`of_binary`] and [`of_math`] have what takes several instructions.
 
 use std::collections::{BTreeMap, BTreeSet};
 use wgpu::naga::proc::TypeResolution;
@@ -21,7 +21,7 @@ use wgpu::naga::{
 
 /// Names of marks. Where a part has several, it is about the first of them.
 pub const EVENT_MARKS: [&str; 11] =
-    ["ray", "turn", "inner", "leaf", "test", "restart", "rope", "fallback", "vote", "pop", "box_test"];
+    ["ray", "turn", "box_test", "inner", "leaf", "test", "restart", "rope", "fallback", "vote", "pop"];
 
 /// Instructions of each mark, on average over the places that have it.
 pub(super) fn regions(module: &Module, info: &ModuleInfo, entry: usize) -> BTreeMap<&'static str, f64> {
