@@ -1,6 +1,6 @@
 //! A structure with a traversal on a device: its cases verified, counted and run.
 
-use super::backend::{Pixel, Prepared, Size};
+use super::backend::{Backend, Pixel, Prepared, Size};
 use super::case::TraceCase;
 use super::counting;
 use super::input::TraceInput;
