@@ -4,12 +4,13 @@ use super::device::{self, DeviceArguments};
 use super::interrupt;
 use super::library::{LibraryArguments, file_name};
 use super::output;
-use crate::camera::{CameraPath, View};
+use crate::camera::CameraPath;
+use crate::device::CpuDevice;
 use crate::error::{Error, Result};
 use crate::guard;
 use crate::record::picture;
 use crate::workloads::size::parse_size;
-use crate::workloads::trace::backend::{Config, Counters, Prepared, Size, surface_epsilon};
+use crate::workloads::trace::backend::{Backend, Counters, surface_epsilon};
 use crate::workloads::trace::{Agreement, Selection, counting, pictures, rays, tracer};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -60,6 +61,9 @@ Examples:
   rtbench render --scene stadium --structure grid --config P --heatmap steps -o grid.png
       where a grid wastes its steps: dark is none, yellow the most of the image";
 
+/// Lanes of the warps of a heat map.
+const WARP: u32 = 32;
+
 /// What a heat map shows.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Heatmap {
@@ -67,10 +71,12 @@ enum Heatmap {
     Steps,
     /// Ray/triangle tests
     Tests,
-    /// Restarts of the kd-tree's traversal
+    /// Restarts at or below the root
     Restarts,
-    /// Ropes followed from leaf to leaf
+    /// Ropes, or links to parents, followed
     Ropes,
+    /// Percentage of the lanes of warps of 32 that take part in what these issue, by work-groups, counted on the CPU
+    Utilisation,
 }
 
 impl Heatmap {
@@ -80,6 +86,7 @@ impl Heatmap {
             Heatmap::Tests => counters.tests,
             Heatmap::Restarts => counters.restarts,
             Heatmap::Ropes => counters.ropes,
+            Heatmap::Utilisation => 0, // of no single pixel
         }
     }
 
@@ -89,6 +96,7 @@ impl Heatmap {
             Heatmap::Tests => "triangle tests",
             Heatmap::Restarts => "restarts",
             Heatmap::Ropes => "ropes",
+            Heatmap::Utilisation => "lanes of warps that take part [%]",
         }
     }
 }
@@ -121,7 +129,16 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     }
     let rgba = match arguments.heatmap {
         None => pictures::image(&mut *prepared, config, view, size)?,
-        Some(heatmap) => paint(heatmap, arguments.scale_max, &mut *prepared, config, view, size)?,
+        Some(heatmap) => {
+            let values = match heatmap {
+                Heatmap::Utilisation => {
+                    let cpu = CpuDevice::new(arguments.device.threads)?;
+                    cpu.prepare(&scene, &*built.structure, selection.method())?.utilisation(config, view, size, WARP)?
+                }
+                _ => pictures::per_pixel(&mut *prepared, config, view, size, &|counters| heatmap.of(counters))?,
+            };
+            paint(heatmap, arguments.scale_max, &values)?
+        }
     };
     let one = std::slice::from_ref(view);
     let counted =
@@ -141,16 +158,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     ))
 }
 
-/// Renders with the counting kernel, colours the counts and prints what the colours mean.
-fn paint(
-    heatmap: Heatmap,
-    scale_max: Option<u32>,
-    prepared: &mut dyn Prepared,
-    config: Config,
-    view: &View,
-    size: Size,
-) -> Result<Vec<u8>> {
-    let values = pictures::per_pixel(prepared, config, view, size, &|counters| heatmap.of(counters))?;
+/// Colours counts and prints what the colours mean.
+fn paint(heatmap: Heatmap, scale_max: Option<u32>, values: &[u32]) -> Result<Vec<u8>> {
     let min = values.iter().copied().min().unwrap_or(0);
     let max = values.iter().copied().max().unwrap_or(0);
     let mean = values.iter().map(|&v| f64::from(v)).sum::<f64>() / values.len().max(1) as f64;
@@ -159,5 +168,5 @@ fn paint(
         "{} per pixel: min {min}, mean {mean:.2}, max {max}; colours from dark blue (0) by way of red to yellow ({top})\n",
         heatmap.name(),
     ))?;
-    Ok(picture::heat_map(&values, top))
+    Ok(picture::heat_map(values, top))
 }

@@ -216,6 +216,15 @@ pub trait Prepared {
         Err(Error::unsupported("warps are counted by twins on the CPU"))
     }
 
+    /// For each pixel of a frame, the percentage of the lanes of its work-group's warps that take part in what these
+    /// issue: on the CPU.
+    ///
+    /// # Errors
+    /// As [`Prepared::in_warps`].
+    fn utilisation(&mut self, _config: Config, _view: &View, _size: Size, _width: u32) -> Result<Vec<u32>> {
+        Err(Error::unsupported("warps are counted by twins on the CPU"))
+    }
+
     /// One pass over a path by the timed kernel: the time of each frame. Nothing is read back in between.
     fn time_path(
         &mut self,

@@ -187,6 +187,27 @@ impl<'a> CpuPrepared<'a> {
         }
     }
 
+    /// The traversal, counting what warps of `width` lanes issue.
+    ///
+    /// # Errors
+    /// [`Error::Refused`] where that is not modelled.
+    fn warps_of(&self, frame: &Frame, width: u32) -> Result<InWarps<'_>> {
+        let Some(lockstep) = self.method.traversal.lockstep else {
+            return Err(Error::unsupported(format!(
+                "how lanes of {} wait is not modelled",
+                self.method.traversal.kernel
+            )));
+        };
+        // The twin's groups are those of the kernel, or 8 x 8 pixels of them one after another
+        let asked = self.method.group;
+        if (0..frame.group.size()).any(|lane| asked.place(lane) != frame.group.place(lane)) {
+            let Group { width, height } = asked;
+            return Err(Error::unsupported(format!("warps of a work-group of {width}x{height} are not modelled")));
+        }
+        let group = simt::Group { size: frame.group.size(), width };
+        Ok(InWarps::new(&*self.traversal, lockstep(&self.method.parameters), group))
+    }
+
     fn frame<'f>(&self, config: Config, view: &'f View, size: Size) -> Frame<'f>
     where
         'a: 'f,
@@ -231,25 +252,35 @@ impl Prepared for CpuPrepared<'_> {
 
     fn in_warps(&mut self, config: Config, view: &View, size: Size, width: u32) -> Result<ByRayType<Sums>> {
         let frame = self.frame(config, view, size);
-        let Some(lockstep) = self.method.traversal.lockstep else {
-            return Err(Error::unsupported(format!(
-                "how lanes of {} wait is not modelled",
-                self.method.traversal.kernel
-            )));
-        };
-        // The twin's groups are those of the kernel, or 8 x 8 pixels of them one after another
-        let asked = self.method.group;
-        if (0..frame.group.size()).any(|lane| asked.place(lane) != frame.group.place(lane)) {
-            let Group { width, height } = asked;
-            return Err(Error::unsupported(format!("warps of a work-group of {width}x{height} are not modelled")));
-        }
-        let group = simt::Group { size: frame.group.size(), width };
-        let in_warps = InWarps::new(&*self.traversal, lockstep(&self.method.parameters), group);
+        let in_warps = self.warps_of(&frame, width)?;
         for tile in tiles(size, 1, (size.pixels() as u32).div_ceil(BAND_PIXELS), frame.group) {
             let mut out = vec![(); (tile.rows * size.width) as usize];
             self.render::<Counters, _>(&in_warps, &frame, tile, &mut out, |_| ());
         }
         in_warps.sums().map_err(Error::Device)
+    }
+
+    fn utilisation(&mut self, config: Config, view: &View, size: Size, width: u32) -> Result<Vec<u32>> {
+        if self.method.is_staged(config.bounces()) {
+            return Err(Error::unsupported("reflections in passes of their own belong to no work-group of pixels"));
+        }
+        let frame = self.frame(config, view, size);
+        self.warps_of(&frame, width)?;
+        let mut out = vec![0; size.pixels()];
+        let of_group = |corner, strip: &mut Strip<u32>| -> Result<()> {
+            let in_warps = self.warps_of(&frame, width)?;
+            let mut pixels = Vec::new();
+            render_group::<Counters>(&frame, &in_warps, corner, |x, y, _| pixels.push((x, y)));
+            let sums = in_warps.sums().map_err(Error::Device)?;
+            let share = sums.iter().fold(Sums::default(), |all, sums| all.with(sums)).utilisation(width);
+            let percent = (100.0 * share.unwrap_or(0.0)).round() as u32;
+            pixels.into_iter().for_each(|(x, y)| strip.set(x, y, percent));
+            Ok(())
+        };
+        let whole = Tile { column: 0, columns: size.width, row: 0, rows: size.height };
+        let done = self.device.pool().install(|| self.groups(&frame, whole, &mut out, of_group));
+        done.into_iter().collect::<Result<Vec<()>>>()?;
+        Ok(out)
     }
 
     fn time_path(

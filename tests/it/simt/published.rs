@@ -87,7 +87,7 @@ fn bounds_are_below_the_published_times() {
     for (name, device) in [("8600gt", "8600GT"), ("gtx280", "GTX280")] {
         let gpu = Gpu::load(name).unwrap();
         for ((scene, config, side), structures) in groups(&gpu, device, "") {
-            // Lamp and mirrors of the robots are not the thesis's; and our grid computes borders where it adds distances
+            // Lamp and mirrors of the robots are not the thesis's; our grid computes borders where that adds distances
             for (structure, [_, bound, time]) in structures {
                 if scene != "robots" {
                     assert!(bound <= time, "{device} {scene} {config} {side} {structure}: {bound} {time}");

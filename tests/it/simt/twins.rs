@@ -133,3 +133,23 @@ fn what_is_not_modelled_is_refused() {
         assert!(error.contains(words), "{text}: {error}");
     }
 }
+
+#[test]
+fn a_heat_map_has_the_percentage_of_each_work_group() {
+    let cpu = CpuBackend::new(2).unwrap();
+    let scene = load("hall:triangles=15000").unwrap();
+    let selection = Selection::parse("bvh-stack").unwrap();
+    let built = selection.build(&scene, 0).unwrap();
+    let mut prepared = cpu.prepare(&scene, &*built.structure, selection.method()).unwrap();
+    let view = CameraPath::for_scene(&scene, true).views(&scene, Some(1)).unwrap().remove(0);
+    let percent = prepared.utilisation(Config::P, &view, SIZE, 32).unwrap();
+    assert_eq!(percent.len(), SIZE.pixels());
+    let at = |x: u32, y: u32| percent[(y * SIZE.width + x) as usize];
+    for (x, y) in (0..SIZE.width).flat_map(|x| (0..SIZE.height).map(move |y| (x, y))) {
+        assert_eq!(at(x, y), at(x / 8 * 8, y / 8 * 8), "{x} {y}");
+        assert!((1..=100).contains(&at(x, y)), "{x} {y}: {}", at(x, y));
+    }
+    assert!(percent.iter().any(|&value| value != percent[0]));
+    // One lane is all of its warp
+    assert!(prepared.utilisation(Config::PSR, &view, SIZE, 1).unwrap().iter().all(|&value| value == 100));
+}

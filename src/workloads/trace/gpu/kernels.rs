@@ -363,23 +363,6 @@ pub fn defaults() -> Result<Vec<(String, Source)>> {
     Ok(defaults)
 }
 
-/// The timed kernel of frames as a GPU runs it, with a stack of 32; where a frame has several passes, that of primary
-/// rays.
-///
-/// # Errors
-/// [`crate::Error::Device`] with file and line for an include that does not exist (a mistake in `kernels/`).
-pub fn timed(method: Method, config: Config) -> Result<Source> {
-    let entry = if method.traversal.packets.is_some() {
-        packet_passes(config, false)[0]
-    } else if method.is_staged(config.bounces()) {
-        Entry::Staged { config, counting: false, pass: StagedPass::Primary }
-    } else {
-        Entry::Render { config, counting: false }
-    };
-    let kernel = Kernel { entry, method, stack_size: 32, software_threads: 0, textures: false, leaf_order: false };
-    kernel.assemble().map_err(Error::Device)
-}
-
 /// All variants that the program can run, with a stack of 32, for the static checks.
 pub fn all() -> Vec<Kernel> {
     let mut all = Vec::new();

@@ -4,15 +4,16 @@ use super::super::sums::Sums;
 use super::gpu::Gpu;
 use super::order::{Modelled, rank};
 use super::weights::Weights;
+use crate::device::Source;
 use crate::error::{Error, Result};
 use crate::record::journal::Journal;
 use crate::record::row::{Row, Status, Value};
 use crate::report::{Cell, Column, Form, Origin, Row as TableRow, Table};
-use crate::workloads::trace::Selection;
 use crate::workloads::trace::backend::RAY_TYPES;
-use crate::workloads::trace::gpu::kernels;
+use crate::workloads::trace::gpu::kernels::{self, Entry, Kernel, StagedPass};
 use crate::workloads::trace::rays::Config;
 use crate::workloads::trace::record::{WORKLOAD, variant_of};
+use crate::workloads::trace::{Method, Selection};
 
 const ORIGIN: Origin = Origin { source: "simt", kind: "table", published: "" };
 
@@ -37,6 +38,23 @@ fn selection_of(row: &Row) -> Result<Selection> {
     Selection::parse(&if variant == "default" { structure.to_owned() } else { format!("{structure}:{variant}") })
 }
 
+/// The timed kernel of frames as a GPU runs it, with a stack of 32; where a frame has several passes, that of primary
+/// rays.
+///
+/// # Errors
+/// [`crate::Error::Device`] with file and line for an include that does not exist (a mistake in `kernels/`).
+fn timed_kernel(method: Method, config: Config) -> Result<Source> {
+    let entry = if method.traversal.packets.is_some() {
+        kernels::packet_passes(config, false)[0]
+    } else if method.is_staged(config.bounces()) {
+        Entry::Staged { config, counting: false, pass: StagedPass::Primary }
+    } else {
+        Entry::Render { config, counting: false }
+    };
+    let kernel = Kernel { entry, method, stack_size: 32, software_threads: 0, textures: false, leaf_order: false };
+    kernel.assemble().map_err(Error::Device)
+}
+
 impl Modelled {
     /// A row on a GPU, by the weights of its kernel.
     ///
@@ -47,7 +65,7 @@ impl Modelled {
         let method = selection.method();
         let config = Config::named(row.key.axis("config"));
         let config = config.ok_or_else(|| Error::argument("RUN", "a row has no ray configuration", ""))?;
-        let kernel = kernels::timed(method, config)?;
+        let kernel = timed_kernel(method, config)?;
         let bytes = kernel.cost()?.workgroup_bytes;
         Ok(Modelled {
             warps: gpu.resident_warps(selection.name(), method.group.size(), bytes),
