@@ -198,7 +198,7 @@ impl<'a> CpuPrepared<'a> {
                 self.method.traversal.kernel
             )));
         };
-        // The twin's groups are those of the kernel, or 8 x 8 pixels of them one after another
+        // The twin goes through 8 x 8 pixels, the kernel through its own group: lanes must have the same order in both
         let asked = self.method.group;
         if (0..frame.group.size()).any(|lane| asked.place(lane) != frame.group.place(lane)) {
             let Group { width, height } = asked;
@@ -273,7 +273,8 @@ impl Prepared for CpuPrepared<'_> {
             render_group::<Counters>(&frame, &in_warps, corner, |x, y, _| pixels.push((x, y)));
             let sums = in_warps.sums().map_err(Error::Device)?;
             let share = sums.iter().fold(Sums::default(), |all, sums| all.with(sums)).utilisation(width);
-            let percent = (100.0 * share.unwrap_or(0.0)).round() as u32;
+            // Where nothing is issued no lane waits
+            let percent = (100.0 * share.unwrap_or(1.0)).round() as u32;
             pixels.into_iter().for_each(|(x, y)| strip.set(x, y, percent));
             Ok(())
         };

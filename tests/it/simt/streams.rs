@@ -1,9 +1,10 @@
 //! Hand-made events.
 
+use rtbench::workloads::trace::Selection;
 use rtbench::workloads::trace::simt::{
     Event::{self, *},
     Group, Lockstep,
-    Part::{All, One, Shared},
+    Part::{All, One},
     Stream, Sums, choice, maybe, repeat, replay,
 };
 use rtbench::workloads::trace::traverse::Lanes;
@@ -13,7 +14,7 @@ const WHILE_WHILE: Lockstep = Lockstep::apart(&[repeat(&[
     maybe(&[One(Leaf), repeat(&[One(Test)]), repeat(&[One(Pop)])]),
 ])]);
 
-const IF_IF: Lockstep = Lockstep::apart(&[repeat(&[choice(&[
+const SEARCH: Lockstep = Lockstep::apart(&[repeat(&[choice(&[
     maybe(&[One(Leaf), repeat(&[One(Test)]), maybe(&[One(Pop)])]),
     maybe(&[One(Step)]),
 ])])]);
@@ -61,7 +62,7 @@ fn lanes_wait_in_while_while() {
 fn lanes_at_different_branches_are_issued_apart() {
     let lanes: [&[Event]; 2] = [&[Step, Leaf, Test, Pop, Step], &[Leaf, Test, Test, Pop, Leaf, Test]];
     // Turns: step and leaf; leaf (first lane) and leaf (second lane) together; step
-    let sums = issue(&IF_IF, FOUR, 0b11, &lanes);
+    let sums = issue(&SEARCH, FOUR, 0b11, &lanes);
     assert_eq!([of(&sums, Step), of(&sums, Leaf), of(&sums, Test), of(&sums, Pop)], [(2, 2), (2, 3), (3, 4), (2, 2)]);
 }
 
@@ -84,12 +85,40 @@ fn warps_go_alone_or_together() {
 
 #[test]
 fn shared_tests_are_divided_by_the_group() {
-    const COOP: Lockstep = Lockstep::together(&[repeat(&[All(Step), Shared(Test)])]);
+    let coop = registered("grid-coop");
     let nine = [Step, Test, Test, Test, Test, Test, Test, Test, Test, Test];
     let lanes: [&[Event]; 3] = [&nine, &nine, &[Step]];
     // 18 tests by 8 invocations in two warps: three turns each
-    let sums = issue(&COOP, Group { size: 8, width: 4 }, 0b111, &lanes);
-    assert_eq!([of(&sums, Step), of(&sums, Test)], [(2, 3), (6, 18)]);
+    let sums = issue(&coop, Group { size: 8, width: 4 }, 0b111, &lanes);
+    assert_eq!([of(&sums, Step), of(&sums, Test)], [(1, 3), (6, 18)]);
+}
+
+/// The loops that a structure's traversal states.
+fn registered(structure: &str) -> Lockstep {
+    let method = Selection::parse(structure).unwrap().method();
+    method.traversal.lockstep.unwrap()(&method.parameters)
+}
+
+#[test]
+fn registered_loops_are_those_of_the_kernels() {
+    // A lane walks on to its next cell with triangles before any are tested
+    let lanes: [&[Event]; 2] = [&[Step, Step, Step, Test, Step], &[Step, Test, Test, Step, Step, Test]];
+    let sums = issue(&registered("grid-coop"), Group { size: 4, width: 4 }, 0b11, &lanes);
+    assert_eq!([of(&sums, Step), of(&sums, Test)], [(5, 7), (2, 4)]);
+    // Two pops and a restart of one lane keep the other one waiting
+    let lanes: [&[Event]; 2] = [&[Step, Child, Pop, Pop, Restart, Step], &[Step, Child, Child, Pop, Leaf, Test]];
+    let sums = issue(&registered("bvh8:stack=short"), FOUR, 0b11, &lanes);
+    assert_eq!([of(&sums, Step), of(&sums, Child), of(&sums, Pop)], [(2, 3), (2, 3), (2, 3)]);
+    assert_eq!([of(&sums, Restart), of(&sums, Leaf), of(&sums, Test)], [(1, 1), (1, 1), (1, 1)]);
+    // A step, then a test, in one turn; a leaf of two triangles takes two turns
+    let lanes: [&[Event]; 2] = [&[Step, Leaf, Test, Test, Pop, Leaf, Test], &[Step, Step, Leaf, Test]];
+    let sums = issue(&registered("bvh-stack:loop=if-if"), FOUR, 0b11, &lanes);
+    assert_eq!([of(&sums, Step), of(&sums, Test)], [(2, 3), (3, 4)]);
+    // The tests of both leaves follow the second way down
+    let lanes: [&[Event]; 2] =
+        [&[Step, Turn, Pop, Step, Step, Leaf, Test, Leaf, Test], &[Step, Step, Turn, Step, Leaf, Test]];
+    let sums = issue(&registered("bvh-stack:loop=speculative"), FOUR, 0b11, &lanes);
+    assert_eq!([of(&sums, Step), of(&sums, Turn), of(&sums, Leaf), of(&sums, Test)], [(4, 6), (1, 2), (2, 3), (2, 3)]);
 }
 
 #[test]

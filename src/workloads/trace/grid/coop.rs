@@ -12,7 +12,7 @@ use crate::workloads::trace::options::PACKET;
 use crate::workloads::trace::simt::{
     Event::{Step, Test},
     Lockstep,
-    Part::{All, Shared},
+    Part::{One, Shared},
     repeat,
 };
 use crate::workloads::trace::traverse::{Best, TraverseIndependent};
@@ -38,7 +38,7 @@ pub static COOP: Traversal = Traversal {
 };
 
 /// How its lanes wait for each other.
-const LOCKSTEP: Lockstep = Lockstep::together(&[repeat(&[All(Step), Shared(Test)])]);
+const LOCKSTEP: Lockstep = Lockstep::together(&[repeat(&[repeat(&[One(Step)]), Shared(Test)])]);
 
 /// See the module.
 pub struct GridCoop<'a> {

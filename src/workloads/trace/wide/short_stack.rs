@@ -43,7 +43,7 @@ pub static SHORT4: Traversal = Traversal {
 /// How its lanes wait for each other.
 const LOCKSTEP: Lockstep = Lockstep::apart(&[repeat(&[
     choice(&[maybe(&[One(Leaf), repeat(&[One(Test)])]), maybe(&[One(Step), repeat(&[One(Child)])])]),
-    choice(&[maybe(&[One(Pop)]), maybe(&[One(Restart)])]),
+    repeat(&[choice(&[maybe(&[One(Pop)]), maybe(&[One(Restart)])])]),
 ])]);
 
 /// In trees of eight.

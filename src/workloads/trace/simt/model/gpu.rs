@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::guard;
 use crate::names as texts;
+use crate::workloads::trace::algorithms;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -95,13 +96,22 @@ impl Gpu {
             number if number > 0.0 && number.is_finite() => Ok(number),
             number => Err(wrong(Some(value.span()), format!("{key} = {number}, which must be above 0"))),
         };
-        let resident = |(name, warps): (&String, &Spanned<u32>)| Ok((name.clone(), positive(name, warps)?));
+        let max_warps = positive("max_warps", &file.max_warps)?;
+        let resident = |(name, warps): (&String, &Spanned<u32>)| {
+            if name != "default" && algorithms().iter().all(|algorithm| algorithm.name != name) {
+                return Err(wrong(Some(warps.span()), format!("there is no structure {name}")));
+            }
+            match positive(name, warps)? {
+                warps if warps <= max_warps => Ok((name.clone(), warps)),
+                more => Err(wrong(Some(warps.span()), format!("{name} = {more}, which is above max_warps"))),
+            }
+        };
         Ok(Gpu {
             multiprocessors: positive("multiprocessors", &file.multiprocessors)?,
             clock_mhz: number("clock_mhz", &file.clock_mhz)?,
             cycles_per_instruction: number("cycles_per_instruction", &file.cycles_per_instruction)?,
             warp_width: positive("warp_width", &file.warp_width)?,
-            max_warps: positive("max_warps", &file.max_warps)?,
+            max_warps,
             shared_bytes: match *file.shared_bytes.get_ref() {
                 0 => return Err(wrong(Some(file.shared_bytes.span()), "shared_bytes = 0".into())),
                 bytes => bytes,
@@ -159,6 +169,16 @@ mod tests {
             ("multiprocessors = 2", "multiprocessors = 0", "x.toml:2: multiprocessors = 0"),
             ("shared_bytes = 16384", "shared_bytes = \"all\"", "x.toml:7: "),
             ("shared_bytes = 16384\n", "shared_bytes = 1\n[resident_warps]\ngrid = 0\n", "x.toml:9: grid = 0"),
+            (
+                "shared_bytes = 16384\n",
+                "shared_bytes = 1\n[resident_warps]\nkd-tree = 8\n",
+                "x.toml:9: there is no structure",
+            ),
+            (
+                "shared_bytes = 16384\n",
+                "shared_bytes = 1\n[resident_warps]\ngrid = 25\n",
+                "x.toml:9: grid = 25, which is above",
+            ),
         ] {
             let message = wrong(&GOOD.replace(from, to));
             assert!(message.contains(words), "{message}");

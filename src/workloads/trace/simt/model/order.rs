@@ -37,7 +37,7 @@ pub struct Ranked {
     pub relative: f64,
     /// The same with 5 % and 95 % of all draws of weights within a factor of [`EVENT_FACTOR`].
     pub band: (f64, f64),
-    /// True if it is too close to the one before it.
+    /// True if it is too close to the first one of its place.
     pub close: bool,
 }
 
@@ -69,11 +69,14 @@ pub fn rank(gpu: &Gpu, rows: &[Modelled]) -> Vec<Ranked> {
             .collect();
         drawn.iter_mut().zip(&works).for_each(|(drawn, work)| drawn.push(work / works[first]));
     }
-    let mut before: Option<f64> = None;
+    // The first one of those that are too close to each other
+    let mut front: Option<f64> = None;
     let ranked = order.into_iter().map(|index| {
         drawn[index].sort_by(f64::total_cmp);
-        let close = before.is_some_and(|before| works[index] < before * CLOSE);
-        before = Some(works[index]);
+        let close = front.is_some_and(|front| works[index] < front * CLOSE);
+        if !close {
+            front = Some(works[index]);
+        }
         Ranked {
             index,
             bound_ms: gpu.issue_ms(rows[index].weights.instructions(&rows[index].sums))
@@ -123,5 +126,9 @@ mod tests {
         // 81,000 instructions of two frames
         assert!((ranked[0].bound_ms - gpu.issue_ms(81_000.0) / 2.0).abs() < 1e-12);
         assert!(rank(&gpu, &[]).is_empty());
+        // 10 % and 20 % behind the first one: the third is not too close to it
+        let row = |name, steps| row(name, steps, 0, 16);
+        let ranked = rank(&gpu, &[row("a", 10_000), row("b", 11_000), row("c", 12_000)]);
+        assert_eq!(ranked.iter().map(|r| r.close).collect::<Vec<_>>(), [false, true, false]);
     }
 }

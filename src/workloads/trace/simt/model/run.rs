@@ -22,7 +22,7 @@ struct Group {
     title: String,
     rows: Vec<Modelled>,
     /// What is not modelled, and why.
-    without: Vec<String>,
+    without: Vec<(String, String)>,
 }
 
 /// What a row's warps issued, by ray type; `None` where they were not counted.
@@ -65,6 +65,8 @@ impl Modelled {
         let method = selection.method();
         let config = Config::named(row.key.axis("config"));
         let config = config.ok_or_else(|| Error::argument("RUN", "a row has no ray configuration", ""))?;
+        let frames = row.key.axis("frames").parse().ok().filter(|&frames| frames > 0);
+        let frames = frames.ok_or_else(|| Error::argument("RUN", "a row has no number of frames", ""))?;
         let kernel = timed_kernel(method, config)?;
         let bytes = kernel.cost()?.workgroup_bytes;
         Ok(Modelled {
@@ -72,21 +74,22 @@ impl Modelled {
             name: selection.full_name(),
             weights: Weights::of_kernel(&kernel)?,
             sums,
-            frames: row.key.axis("frames").parse().unwrap_or(1),
+            frames,
         })
     }
 }
 
 fn groups(journals: &[&Journal], gpu: &Gpu) -> Result<Vec<Group>> {
     let mut groups: Vec<Group> = Vec::new();
+    let mut other_width = None;
     for row in journals.iter().flat_map(|journal| &journal.rows) {
         let width = row.key.axis("warp_width");
         if row.key.workload != WORKLOAD || width.is_empty() {
             continue;
         }
         if width.parse() != Ok(gpu.warp_width) {
-            let problem = format!("its warps have {width} lanes, those of {} have {}", gpu.name, gpu.warp_width);
-            return Err(Error::argument("--gpu", problem, "measure with that --warp-width, or give another GPU"));
+            other_width.get_or_insert(width);
+            continue;
         }
         let [scene, path, config, size] = ["scene", "camera_path", "config", "resolution"].map(|a| row.key.axis(a));
         let title = format!("{scene}, {config}, {size}, {path}, {} frames", row.key.axis("frames"));
@@ -100,6 +103,7 @@ fn groups(journals: &[&Journal], gpu: &Gpu) -> Result<Vec<Group>> {
                 let modelled = Modelled::of(row, sums, gpu)?;
                 // Of several rows of the same, the last one counts
                 group.rows.retain(|known| known.name != modelled.name);
+                group.without.retain(|(name, _)| *name != modelled.name);
                 group.rows.push(modelled);
             }
             None => {
@@ -108,9 +112,17 @@ fn groups(journals: &[&Journal], gpu: &Gpu) -> Result<Vec<Group>> {
                     Status::Ok => row.warnings.iter().find(|warning| warning.starts_with("warps are not counted")),
                     _ => Some(&row.message),
                 };
-                group.without.push(format!("{name} ({})", reason.map_or("not counted", String::as_str)));
+                let is_known = group.rows.iter().any(|known| known.name == name)
+                    || group.without.iter().any(|(known, _)| *known == name);
+                if !is_known {
+                    group.without.push((name, reason.map_or("not counted", String::as_str).to_owned()));
+                }
             }
         }
+    }
+    if let Some(width) = other_width.filter(|_| groups.is_empty()) {
+        let problem = format!("warps of the run have {width} lanes, those of {} have {}", gpu.name, gpu.warp_width);
+        return Err(Error::argument("--gpu", problem, "measure with that --warp-width, or give another GPU"));
     }
     Ok(groups)
 }
@@ -161,9 +173,9 @@ fn table(group: Group, gpu: &Gpu) -> Table {
     let rows = ranked.iter().enumerate().map(row).collect();
     let mut notes = vec![
         format!(
-            "Issue bound: a lower bound of a mean frame's time, never a time. Work: issued instructions over resident \
+            "Issue bound: the least time of issuing what is counted, no time of a frame. Work: issued instructions over resident \
              warps, as a multiple of the first one's; band: the same for weights of instructions within a factor of {}. \
-             Too close: within {:.0} % of the one above.",
+             Too close: within {:.0} % of the first one of the place.",
             super::EVENT_FACTOR,
             100.0 * (super::CLOSE - 1.0)
         ),
@@ -174,7 +186,8 @@ fn table(group: Group, gpu: &Gpu) -> Table {
         "Registers, memory, caches and latency are not modelled.".to_owned(),
     ];
     if !group.without.is_empty() {
-        notes.push(format!("Not modelled: {}.", group.without.join("; ")));
+        let list: Vec<String> = group.without.iter().map(|(name, reason)| format!("{name} ({reason})")).collect();
+        notes.push(format!("Not modelled: {}.", list.join("; ")));
     }
     Table {
         origin: ORIGIN,
