@@ -8,8 +8,9 @@
 //!
 //! Instructions are those of a scalar machine: an operation on a vector counts once for each component, a read or write
 //! of memory once for each 16 bytes; functions count wherever they are called; private variables are registers, unless
-//! an index selects an element. Of two branches without a mark the shorter one counts, of others both; a loop
-//! without a mark does not count at all. An event that is in several places has their mean. [`of_binary`] and [`of_math`] have what takes several instructions.
+//! an index selects an element. Of two branches without a mark the shorter one counts, of others both; a loop without a
+//! mark does not count at all. An event that is in several places has their mean. [`of_binary`] and [`of_math`] have
+//! what takes several instructions.
 
 use std::collections::{BTreeMap, BTreeSet};
 use wgpu::naga::proc::TypeResolution;
