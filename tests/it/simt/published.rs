@@ -116,3 +116,20 @@ fn bounds_grow_with_the_image_as_times_do() {
         assert!(count >= 25 && rms <= 0.25, "{device}: {rms} over {count}");
     }
 }
+
+/// The weights of the kernels as a GPU runs them without options, with the kernels' hashes.
+#[test]
+fn the_committed_weights_are_those_of_the_kernels() {
+    let found = std::process::Command::new(env!("CARGO_BIN_EXE_rtbench"))
+        .args(["kernels", "--events", "--format", "csv", "sweep"])
+        .output()
+        .unwrap();
+    let text = String::from_utf8(found.stdout).unwrap();
+    let timed = text.lines().filter(|line| !line.contains(" counting") && !line.contains("build "));
+    let expected: String = timed.map(|line| format!("{line}\n")).collect();
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("gpus/weights.csv");
+    let committed = std::fs::read_to_string(&path).unwrap();
+    let how = "rtbench kernels --events --format csv sweep | grep -v ' counting\\|build ' > gpus/weights.csv";
+    assert!(committed == expected, "a kernel has changed: judge the orders again, and renew the file: {how}");
+    assert!(expected.lines().count() > 60, "{expected}");
+}
