@@ -107,6 +107,10 @@ impl Heatmap {
 /// Those of loading, of building, of the device and of the output.
 pub fn run(arguments: &Arguments) -> Result<()> {
     let selection = Selection::parse(&arguments.structure)?;
+    if arguments.heatmap.is_some() && selection.method().traversal.agreement == Agreement::HitsOnly {
+        let problem = format!("nothing but rays is counted for {}", selection.name());
+        return Err(Error::argument("--heatmap", problem, "leave it out, or choose another structure"));
+    }
     interrupt::at_once()?;
     let config = rays::parse_config(&arguments.config)?;
     let size = parse_size(&arguments.resolution)?;
@@ -123,10 +127,6 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     device::announce(&device);
     let built = selection.build(&scene, arguments.device.threads)?;
     let mut prepared = tracer::prepare(&device.device, &scene, &*built.structure, selection.method())?;
-    if arguments.heatmap.is_some() && selection.method().traversal.agreement == Agreement::HitsOnly {
-        let problem = format!("nothing but rays is counted for {}", selection.name());
-        return Err(Error::argument("--heatmap", problem, "leave it out, or choose another structure"));
-    }
     let rgba = match arguments.heatmap {
         None => pictures::image(&mut *prepared, config, view, size)?,
         Some(heatmap) => {

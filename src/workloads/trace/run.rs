@@ -108,34 +108,32 @@ impl<'a> TraceRun<'a> {
         Ok(verdict)
     }
 
-    /// Adds what warps of `width` lanes issue, by the twin; a warning where that is not modelled.
+    /// Adds what warps of `width` lanes issue; a warning where that is not modelled.
     fn count_warps(&self, case: &TraceCase, width: u32, verdict: &mut Verdict) -> Result<()> {
-        let (context, views) = (self.input.context, &self.input.path(case)?.views);
-        let verifier = self.input.verifier.borrow();
-        let mut twin = match verifier.cpu.prepare(&verifier.scene, &*self.built.structure, self.selection.method()) {
-            Ok(twin) => twin,
+        let sums = match self.warps(case, width) {
             Err(Error::Refused(refusal)) => {
                 verdict.warnings.push(format!("warps are not counted: {refusal}"));
                 return Ok(());
             }
-            Err(other) => return Err(other),
+            sums => sums?,
         };
-        let mut sums = ByRayType::<Sums>::default();
-        for view in views {
-            context.check_interrupt()?;
-            match twin.in_warps(case.config, view, case.size, width) {
-                Ok(of_frame) => sums.iter_mut().zip(&of_frame).for_each(|(sum, frame)| *sum = sum.with(frame)),
-                Err(Error::Refused(refusal)) => {
-                    verdict.warnings.push(format!("warps are not counted: {refusal}"));
-                    return Ok(());
-                }
-                Err(other) => return Err(other),
-            }
-        }
         for (ray, sums) in RAY_TYPES.iter().zip(&sums).filter(|(_, sums)| sums.warps > 0) {
             verdict.metrics.extend(sums.values().into_iter().map(|(name, value)| Metric::of(ray, &name, value)));
         }
         Ok(())
+    }
+
+    /// What warps issue for all frames, by the twin.
+    fn warps(&self, case: &TraceCase, width: u32) -> Result<ByRayType<Sums>> {
+        let verifier = self.input.verifier.borrow();
+        let mut twin = verifier.cpu.prepare(&verifier.scene, &*self.built.structure, self.selection.method())?;
+        let mut sums = ByRayType::<Sums>::default();
+        for view in &self.input.path(case)?.views {
+            self.input.context.check_interrupt()?;
+            let of_frame = twin.in_warps(case.config, view, case.size, width)?;
+            sums.iter_mut().zip(&of_frame).for_each(|(sum, frame)| *sum = sum.with(frame));
+        }
+        Ok(sums)
     }
 
     /// All structures must make the same picture, to the bit where the device computes to the bit. Returns the

@@ -84,7 +84,7 @@ impl<'m> Counting<'m> {
         match statement {
             Statement::Emit(range) => range.clone().for_each(|handle| self.expression(body, handle)),
             Statement::Block(block) => self.block(body, block),
-            Statement::If { condition, accept, reject } => match self.constant(body.function, *condition) {
+            Statement::If { condition, accept, reject } => match constant(self.module, body.function, *condition) {
                 Some(taken) => self.block(body, if taken { accept } else { reject }),
                 None => {
                     self.cost.branch += 1;
@@ -205,18 +205,6 @@ impl<'m> Counting<'m> {
         }
     }
 
-    /// The value of a condition that is a constant.
-    fn constant(&self, function: &Function, condition: Handle<Expression>) -> Option<bool> {
-        let expression = match function.expressions[condition] {
-            Expression::Constant(constant) => &self.module.global_expressions[self.module.constants[constant].init],
-            ref expression => expression,
-        };
-        match expression {
-            Expression::Literal(Literal::Bool(value)) => Some(*value),
-            _ => None,
-        }
-    }
-
     /// Notes the variable that a pointer or a texture is of, or a part of.
     fn touch(&mut self, body: &mut Body, mut handle: Handle<Expression>) {
         loop {
@@ -248,5 +236,17 @@ impl<'m> Counting<'m> {
             }
             _ => Memory::Shared,
         }
+    }
+}
+
+/// The value of a condition that is a constant.
+pub(super) fn constant(module: &Module, function: &Function, condition: Handle<Expression>) -> Option<bool> {
+    let expression = match function.expressions[condition] {
+        Expression::Constant(constant) => &module.global_expressions[module.constants[constant].init],
+        ref expression => expression,
+    };
+    match expression {
+        Expression::Literal(Literal::Bool(value)) => Some(*value),
+        _ => None,
     }
 }

@@ -12,12 +12,13 @@
 //! mark does not count at all. An event that is in several places has their mean. [`of_binary`] and [`of_math`] have
 //! what takes several instructions.
 
+use super::count::constant;
 use std::collections::{BTreeMap, BTreeSet};
 use wgpu::naga::proc::TypeResolution;
 use wgpu::naga::valid::{FunctionInfo, ModuleInfo};
 use wgpu::naga::{
-    AddressSpace, BinaryOperator, Block, Expression, Function, Handle, Literal, MathFunction, Module, ScalarKind,
-    Statement, TypeInner, VectorSize,
+    AddressSpace, BinaryOperator, Block, Expression, Function, Handle, MathFunction, Module, ScalarKind, Statement,
+    TypeInner, VectorSize,
 };
 
 /// Names of marks. Where a part has several, it is about the first of them.
@@ -93,7 +94,7 @@ impl<'m> Regions<'m> {
                     }
                 }
                 Statement::Block(block) => self.marks(function, block, found),
-                Statement::If { condition, accept, reject } => match self.constant(function, *condition) {
+                Statement::If { condition, accept, reject } => match constant(self.module, function, *condition) {
                     Some(taken) => self.marks(function, if taken { accept } else { reject }, found),
                     None => [accept, reject].into_iter().for_each(|block| self.marks(function, block, found)),
                 },
@@ -123,7 +124,7 @@ impl<'m> Regions<'m> {
                     self.add(owner, sum);
                 }
                 Statement::Block(block) => self.inner(function, info, block, owner),
-                Statement::If { condition, accept, reject } => match self.constant(function, *condition) {
+                Statement::If { condition, accept, reject } => match constant(self.module, function, *condition) {
                     Some(taken) => self.inner(function, info, if taken { accept } else { reject }, owner),
                     None => {
                         self.add(owner, 1);
@@ -213,18 +214,6 @@ impl<'m> Regions<'m> {
             Expression::ImageLoad { .. } | Expression::ImageSample { .. } => 1,
             // Bits that are read as another type, and what selects or assembles registers
             _ => 0,
-        }
-    }
-
-    /// The value of a condition that is a constant.
-    fn constant(&self, function: &Function, condition: Handle<Expression>) -> Option<bool> {
-        let expression = match function.expressions[condition] {
-            Expression::Constant(constant) => &self.module.global_expressions[self.module.constants[constant].init],
-            ref expression => expression,
-        };
-        match expression {
-            Expression::Literal(Literal::Bool(value)) => Some(*value),
-            _ => None,
         }
     }
 }

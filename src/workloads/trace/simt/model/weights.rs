@@ -37,7 +37,7 @@ impl Weights {
         Ok(Weights { ray: of("ray"), of: EVENTS.map(|event| of(mark(event))) })
     }
 
-    /// The same weight but for these events.
+    /// Weights of a traversal and of these events; all others are 0.
     pub fn by_hand(ray: f64, events: &[(Event, f64)]) -> Weights {
         let mut weights = Weights { ray, of: [0.0; EVENTS.len()] };
         events.iter().for_each(|&(event, weight)| weights.of[event as usize] = weight);
