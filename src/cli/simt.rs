@@ -46,7 +46,7 @@ Examples:
 pub fn run(arguments: &Arguments) -> Result<()> {
     let gpu = Gpu::load(&arguments.gpu)?;
     let runs = RecordedRun::read_all(&arguments.runs)?;
-    let journals: Vec<_> = runs.iter().map(|run| &run.general).collect();
+    let journals: Vec<_> = runs.iter().map(|run| &run.journal).collect();
     let tables = model::tables(&journals, &gpu)?;
     write_or_print(&format::write(&tables, arguments.format), arguments.output.as_deref())
 }

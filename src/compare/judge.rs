@@ -86,6 +86,11 @@ impl Uncertain {
         Uncertain { value, noise: 0.0, margin: BUILD_MARGIN_PCT / 100.0 }
     }
 
+    /// Work by a model, with the relative difference that it does not tell apart.
+    pub fn modelled(value: f64, margin: f64) -> Uncertain {
+        Uncertain { value, noise: 0.0, margin }
+    }
+
     /// A frame time with its noise in percent.
     pub fn time(value: f64, noise_pct: f64) -> Uncertain {
         Uncertain { value, noise: noise_pct / 100.0, margin: TIME_MARGIN_PCT / 100.0 }

@@ -2,4 +2,5 @@
 
 mod published;
 mod streams;
+mod study;
 mod twins;

@@ -1,13 +1,23 @@
 //! Findings on a page.
 
 use super::text::details;
-use super::{Finding, line, totals};
+use super::{Finding, apart, line, model_heading, totals};
 use crate::compare::judge::Verdict;
 use crate::report::html::{capital, escape};
 
 /// Writes all findings.
 pub fn write(findings: &[Finding]) -> String {
-    let mut html = format!("<p>{}.</p>\n", escape(&capital(&totals(findings))));
+    let [measured, modelled] = apart(findings);
+    let mut html = format!("<p>{}.</p>\n", escape(&capital(&totals(&measured)))) + &divisions(&measured);
+    if let Some(first) = modelled.first() {
+        html += &format!("<h3>By the SIMT model</h3>\n<p>{}</p>\n", escape(&model_heading(first.document, &modelled)));
+        html += &divisions(&modelled);
+    }
+    html + "<p class=\"note\">Before a case: + agrees, - contradicts, ? undecided: within noise and margin.</p>\n"
+}
+
+fn divisions(findings: &[&Finding]) -> String {
+    let mut html = String::new();
     for finding in findings {
         let class = match finding.verdict {
             Verdict::Holds => "holds",
@@ -31,7 +41,7 @@ pub fn write(findings: &[Finding]) -> String {
         }
         html += "</div>\n";
     }
-    html + "<p class=\"note\">Before a case: + agrees, - contradicts, ? undecided: within noise and margin.</p>\n"
+    html
 }
 
 fn number(cases: usize) -> String {

@@ -31,6 +31,8 @@ pub enum Basis {
     Counts,
     /// How far pictures differ.
     Pictures,
+    /// What the warps of a GPU issue, by the SIMT model: counted, and measured on no GPU.
+    SimtModel,
 }
 
 impl Basis {
@@ -43,6 +45,7 @@ impl Basis {
             Basis::FrameTimes => "frame times",
             Basis::Counts => "counts",
             Basis::Pictures => "pictures",
+            Basis::SimtModel => "the SIMT model",
         }
     }
 }
@@ -94,7 +97,7 @@ pub struct Finding {
     pub claim: &'static str,
     /// The claim itself.
     pub statement: &'static str,
-    /// The device whose times are judged; empty where no device is involved.
+    /// The device whose times are judged, or the GPU of the model; empty where no device is involved.
     pub device: String,
     /// The verdict.
     pub verdict: Verdict,
@@ -198,8 +201,34 @@ impl Grounds {
     }
 }
 
+/// The finding of a claim by the SIMT model of a GPU, in place of frame times; `None` without a case.
+pub fn by_model(statement: Statement, gpu: &str, cases: Vec<Case>, printed: &[Case], remark: &str) -> Option<Finding> {
+    let warnings = Some(remark.to_owned()).filter(|remark| !remark.is_empty()).into_iter().collect();
+    (!cases.is_empty()).then(|| Finding {
+        device: gpu.to_owned(),
+        warnings,
+        ..Finding::of(statement, Basis::SimtModel, cases, printed)
+    })
+}
+
+/// Findings of measurements, and those of the SIMT model, which are never counted together.
+fn apart(findings: &[Finding]) -> [Vec<&Finding>; 2] {
+    let (modelled, measured) = findings.iter().partition(|finding| finding.basis == Basis::SimtModel);
+    [measured, modelled]
+}
+
+/// What findings by the SIMT model are, with the number of those with each verdict.
+fn model_heading(document: &str, modelled: &[&Finding]) -> String {
+    format!(
+        "Claims of {document} by the SIMT model ({}): what warps of a GPU issue, counted without one. In place of times \
+         there are millions of instructions that warps issue for a frame, over the resident warps; differences below \
+         15 % decide nothing. Nothing of this was measured on a GPU: docs/simt-model.md has the model's limits.",
+        totals(modelled)
+    )
+}
+
 /// The number of findings with each verdict, in words.
-fn totals(findings: &[Finding]) -> String {
+fn totals(findings: &[&Finding]) -> String {
     let count = |verdict| findings.iter().filter(|f| f.verdict == verdict).count();
     let words = Verdict::ALL.into_iter().filter(|v| count(*v) > 0).map(|v| format!("{}: {}", v.in_words(), count(v)));
     words.collect::<Vec<_>>().join(", ")

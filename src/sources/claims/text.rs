@@ -1,6 +1,6 @@
 //! Findings as text, Markdown and JSON.
 
-use super::{Finding, line, sign, totals};
+use super::{Basis, Finding, apart, line, model_heading, sign, totals};
 use crate::compare::judge::Verdict;
 use crate::report::html::capital;
 use crate::report::wrap::wrap;
@@ -37,13 +37,30 @@ const MAX_FAILED: usize = 4;
 const STATEMENT: &str = "                       ";
 
 /// The first line: whose claims, judged by which numbers, and how many have each verdict.
-fn heading(findings: &[Finding], by: &str) -> String {
+fn heading(findings: &[&Finding], by: &str) -> String {
     let Some(Finding { document, .. }) = findings.first() else { return "No claims.".into() };
     format!("Claims of {document}, judged by {by} ({}).", totals(findings))
 }
 
+/// Measured findings with their heading, then those of the SIMT model, if there are any.
+fn parts<'a>(findings: &'a [Finding], by: &str) -> Vec<(String, Vec<&'a Finding>)> {
+    let [measured, modelled] = apart(findings);
+    let mut parts = vec![(heading(&measured, by), measured)];
+    if let Some(first) = modelled.first() {
+        parts.push((model_heading(first.document, &modelled), modelled));
+    }
+    parts
+}
+
 fn text(findings: &[Finding], by: &str) -> String {
-    let mut text = wrap(&heading(findings, by), "");
+    let parts: Vec<String> =
+        parts(findings, by).into_iter().map(|(heading, of)| wrap(&heading, "") + &text_of(&of)).collect();
+    parts.join("\n")
+        + "\nBefore a case: + agrees, - contradicts, ? undecided: the difference is within noise and margin.\n"
+}
+
+fn text_of(findings: &[&Finding]) -> String {
+    let mut text = String::new();
     for finding in findings {
         let verdict = match finding.verdict {
             Verdict::NotMeasured => "[ NOT MEASURED ]".to_owned(),
@@ -59,7 +76,7 @@ fn text(findings: &[Finding], by: &str) -> String {
             text += &wrap(&line(case), "         ");
         }
     }
-    text + "\nBefore a case: + agrees, - contradicts, ? undecided: the difference is within noise and margin.\n"
+    text
 }
 
 /// What a verdict rests on; times of a device that computes on the CPU are named as such.
@@ -71,7 +88,11 @@ fn basis(finding: &Finding) -> String {
 /// What a finding rests on, and what to beware of.
 pub(super) fn details(finding: &Finding) -> Vec<String> {
     let mut lines = Vec::new();
-    let device = if finding.device.is_empty() { String::new() } else { format!(" on {}", finding.device) };
+    let device = match finding.device.as_str() {
+        "" => String::new(),
+        gpu if finding.basis == Basis::SimtModel => format!(" of {gpu}"),
+        device => format!(" on {device}"),
+    };
     if finding.verdict == Verdict::NotMeasured {
         lines.push(format!("Nothing was measured that could decide it{device}. It needs {}.", finding.needs));
     } else {
@@ -107,7 +128,15 @@ pub(super) fn details(finding: &Finding) -> Vec<String> {
 
 /// One line per finding, as Markdown.
 pub fn summary(findings: &[Finding], by: &str) -> String {
-    let mut text = heading(findings, by) + "\n\n";
+    parts(findings, by)
+        .into_iter()
+        .map(|(heading, of)| format!("{heading}\n\n{}", rows_of(&of)))
+        .collect::<Vec<_>>()
+        .join("\n")
+}
+
+fn rows_of(findings: &[&Finding]) -> String {
+    let mut text = String::new();
     text += "| claim | verdict | by | scenes | cases | published | statement |\n|:--|:--|:--|--:|--:|--:|:--|\n";
     for finding in findings {
         let measured = finding.verdict != Verdict::NotMeasured;

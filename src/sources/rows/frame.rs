@@ -9,6 +9,7 @@ use crate::record::row::Status;
 use crate::report::Number;
 use crate::workloads::trace::backend::Config;
 use crate::workloads::trace::record::ConfigurationRecord;
+use crate::workloads::trace::simt::model::{Gpu, Modelled};
 use std::fmt::Display;
 
 /// Frame times of one configuration, in milliseconds.
@@ -61,10 +62,30 @@ impl<S> Frame<S> {
     pub fn of(device: usize, scene: S, info: &DeviceInfo, record: &ConfigurationRecord) -> Option<Frame<S>> {
         let times = record.frame_statistics()?;
         let usable = record.status == Status::Ok && record.verified;
-        let (min_ms, max_ms, mean_ms) = (times.min_ms, times.max_ms, times.mean_ms);
         // The CPU twins always have Rust's checks, which are not wgpu's
         let checked = info.checked && info.device_type != DeviceType::CpuTwin;
-        usable.then(|| Frame {
+        let of_frames = [times.min_ms, times.max_ms, times.mean_ms];
+        usable.then(|| Frame::new(device, scene, record, checked, of_frames, times.noise_pct))
+    }
+
+    /// A measurement's work on a GPU by the SIMT model, if its warps were counted: in place of each time, millions of
+    /// instructions over resident warps.
+    pub fn modelled(scene: S, record: &ConfigurationRecord, gpu: &Gpu) -> Option<Frame<S>> {
+        // A structure that this program no longer has is not modelled
+        let modelled = Modelled::of(record, gpu).ok().flatten()?;
+        let usable = record.status == Status::Ok && record.verified;
+        usable.then(|| Frame::new(0, scene, record, false, [modelled.work() / 1e6; 3], None))
+    }
+
+    fn new(
+        device: usize,
+        scene: S,
+        record: &ConfigurationRecord,
+        checked: bool,
+        [min_ms, max_ms, mean_ms]: [f64; 3],
+        noise_pct: Option<f64>,
+    ) -> Frame<S> {
+        Frame {
             device,
             scene,
             structure: record.structure.clone(),
@@ -77,9 +98,9 @@ impl<S> Frame<S> {
             max_ms,
             mean_ms,
             places: None,
-            noise_pct: times.noise_pct,
+            noise_pct,
             repeated: false,
-        })
+        }
     }
 }
 

@@ -6,6 +6,7 @@ use crate::compare::judge::{UNKNOWN_NOISE_PCT, Uncertain};
 use crate::sources::convention::Steps;
 use crate::sources::rows::{self, BuiltBy, Device};
 use crate::workloads::trace::record::CounterSums;
+use crate::workloads::trace::simt::model::CLOSE;
 use std::collections::HashMap;
 use std::ops::Deref;
 
@@ -121,6 +122,9 @@ pub enum Cost {
     Time,
     /// Inner nodes and leaves per primary ray.
     Steps,
+    /// Work by the SIMT model in place of the mean frame time, in millions of instructions over resident
+    /// warps.
+    Work,
 }
 
 impl Cost {
@@ -129,6 +133,7 @@ impl Cost {
         match self {
             Cost::Time => "ms",
             Cost::Steps => "steps per ray",
+            Cost::Work => "M",
         }
     }
 }
@@ -154,6 +159,7 @@ impl Measurement {
         match cost {
             Cost::Time => Some(Uncertain::time(self.frame.mean_ms, self.frame.noise_pct.unwrap_or(UNKNOWN_NOISE_PCT))),
             Cost::Steps => Some(Uncertain::exact(self.steps()?.by(Default::default()))),
+            Cost::Work => Some(Uncertain::modelled(self.frame.mean_ms, CLOSE - 1.0)),
         }
     }
 }

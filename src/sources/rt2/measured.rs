@@ -3,10 +3,11 @@
 use super::data::{Built, Data, Failure, Frame, Measurement};
 use super::models::SceneKey;
 use super::structures::is_own;
-use crate::sources::rows::{Devices, Variant, choose_built, choose_frames, unlike_devices};
+use crate::sources::rows::{Device, Devices, Variant, choose_built, choose_frames, unlike_devices};
 use crate::sources::runs::{RecordedRun, with_traces};
 use crate::workloads::trace::backend::Config;
-use crate::workloads::trace::record::SceneRecord;
+use crate::workloads::trace::record::{ConfigurationRecord, SceneRecord};
+use crate::workloads::trace::simt::model::Gpu;
 
 /// True if a run has rows of structures that this document alone describes.
 pub fn has_rows(run: &RecordedRun) -> bool {
@@ -32,7 +33,7 @@ pub fn data(runs: &[RecordedRun]) -> Data {
                 with_other_rays += 1;
                 continue;
             }
-            let key = scene_key(&record.scene).along(&record.camera_path.name, record.config.shadows());
+            let key = row_key(record);
             let Some(&(device, info)) = devices.get(record.device) else { continue };
             match Frame::of(device, key.clone(), info, record) {
                 Some(frame) => frames.push((frame, record)),
@@ -63,8 +64,29 @@ pub fn data(runs: &[RecordedRun]) -> Data {
     data
 }
 
+/// The work of the same frames on a GPU by the SIMT model; `None` where no warps of its width were counted.
+pub fn modelled(runs: &[RecordedRun], gpu: &Gpu) -> Option<Data> {
+    let records = with_traces(runs).into_iter().flat_map(|run| &run.journal.configurations);
+    let records = records.filter(|record| record.config == Config::P);
+    let frames: Vec<_> =
+        records.filter_map(|record| Some((Frame::modelled(row_key(record), record, gpu)?, ()))).collect();
+    if frames.is_empty() {
+        return None;
+    }
+    let devices = vec![Device { label: gpu.name.clone(), ..Device::default() }];
+    let (frames, notes) = choose_frames(frames, &devices);
+    let mut data = Data { devices, notes, ..Data::default() };
+    frames.into_iter().for_each(|(frame, ())| add(&mut data, Measurement { frame, primary: None }));
+    Some(data)
+}
+
 fn scene_key(record: &SceneRecord) -> SceneKey {
     SceneKey::of(&record.name, record.triangles)
+}
+
+/// The scene of a measurement, which also has a camera path.
+fn row_key(record: &ConfigurationRecord) -> SceneKey {
+    scene_key(&record.scene).along(&record.camera_path.name, record.config.shadows())
 }
 
 /// Adds a measurement in place of an earlier one of the same.

@@ -19,6 +19,7 @@ use crate::error::Result;
 use crate::report::figure::{Figure, Missing};
 use crate::report::{Origin, Table};
 use crate::sources::runs::{RecordedRun, with_traces};
+use crate::workloads::trace::simt::model::Gpu;
 use data::Data;
 use published::Published;
 
@@ -47,13 +48,18 @@ pub struct Numbers {
     data: Option<Data>,
     /// Published.
     published: Published,
+    /// By the SIMT model of each validated GPU, where warps were counted.
+    modelled: Vec<Data>,
 }
 
 impl Numbers {
     /// The numbers of these runs.
     pub fn of(runs: &[RecordedRun]) -> Numbers {
         let data = (!runs.is_empty()).then(|| measured::data(runs));
-        Numbers { data, published: published::data() }
+        // Reading the files of the GPUs that are part of the program cannot fail
+        let gpus = Gpu::validated().unwrap_or_default();
+        let modelled = gpus.iter().filter_map(|gpu| measured::modelled(runs, gpu)).collect();
+        Numbers { data, published: published::data(), modelled }
     }
 }
 
@@ -67,7 +73,9 @@ impl Results for Numbers {
     }
 
     fn claims(&self, _options: &Options) -> Vec<Finding> {
-        claims::judge(self.data.as_ref(), &self.published)
+        let mut findings = claims::judge(self.data.as_ref(), &self.published);
+        findings.extend(claims::by_model(&self.modelled, &self.published));
+        findings
     }
 
     fn figures(&self) -> Result<(Vec<Figure>, Vec<Missing>)> {

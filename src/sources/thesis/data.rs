@@ -18,6 +18,9 @@ pub use crate::sources::rows::Device;
 pub struct Data {
     /// True for the numbers that the thesis printed.
     pub published: bool,
+    /// True for what the SIMT model computes for a GPU: in place of frame times there are millions of issued
+    /// instructions over resident warps, and no counts.
+    pub modelled: bool,
     /// Devices, in the order of the runs.
     pub devices: Vec<Device>,
     /// The thesis's scenes in its order, then the others by name.

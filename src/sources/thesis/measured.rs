@@ -6,10 +6,11 @@ use super::structures;
 use super::structures::Step;
 use super::variant::Variant;
 use crate::sources::convention::Steps;
-use crate::sources::rows::{Built, Devices, choose_built, choose_frames, unlike_devices};
+use crate::sources::rows::{Built, Device, Devices, choose_built, choose_frames, unlike_devices};
 use crate::sources::rt2;
 use crate::sources::runs::{RecordedRun, with_traces};
 use crate::workloads::trace::record::{ConfigurationRecord, CounterSums, SceneRecord};
+use crate::workloads::trace::simt::model::Gpu;
 use std::collections::HashMap;
 
 /// True if a run has rows that the thesis's tables can show: all but those of another document's own structures.
@@ -59,6 +60,24 @@ pub fn data(runs: &[RecordedRun]) -> Data {
     }
     data.notes.extend(unlike_devices(&data.devices, &data.frames));
     data
+}
+
+/// The work of the same frames on a GPU by the SIMT model; `None` where no warps of its width were counted. Scenes and
+/// structures are those of `measured`.
+pub fn modelled(runs: &[RecordedRun], measured: &Data, gpu: &Gpu) -> Option<Data> {
+    let records = with_traces(runs).into_iter().flat_map(|run| &run.journal.configurations);
+    let of_thesis = records.filter(|record| CONFIGS.contains(&record.config));
+    let frames: Vec<_> =
+        of_thesis.filter_map(|record| Some((Frame::modelled(row_key(record), record, gpu)?, ()))).collect();
+    if frames.is_empty() {
+        return None;
+    }
+    let devices = vec![Device { label: gpu.name.clone(), ..Device::default() }];
+    let (scenes, built) = (measured.scenes.clone(), measured.built.clone());
+    let (frames, notes) = choose_frames(frames, &devices);
+    let mut data = Data { modelled: true, devices, scenes, built, notes, ..Data::default() };
+    frames.into_iter().for_each(|(frame, ())| add_frame(&mut data, frame));
+    Some(data)
 }
 
 fn scene_key(record: &SceneRecord) -> SceneKey {

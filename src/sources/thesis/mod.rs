@@ -21,6 +21,7 @@ use crate::error::Result;
 use crate::report::figure::{Figure, Missing};
 use crate::report::{Origin, Table};
 use crate::sources::runs::{RecordedRun, with_traces};
+use crate::workloads::trace::simt::model::Gpu;
 use data::Data;
 use published::{GT8600, GTX280};
 
@@ -48,6 +49,8 @@ pub struct Numbers {
     pub data: Data,
     /// Published.
     pub published: Data,
+    /// By the SIMT model of each validated GPU, where warps were counted.
+    pub modelled: Vec<Data>,
 }
 
 impl Numbers {
@@ -55,7 +58,10 @@ impl Numbers {
     pub fn of(runs: &[RecordedRun]) -> Numbers {
         let published = published::data();
         let data = if runs.is_empty() { published.clone() } else { measured::data(runs) };
-        Numbers { data, published }
+        // Reading the files of the GPUs that are part of the program cannot fail
+        let gpus = Gpu::validated().unwrap_or_default();
+        let modelled = gpus.iter().filter_map(|gpu| measured::modelled(runs, &data, gpu)).collect();
+        Numbers { data, published, modelled }
     }
 }
 
@@ -65,11 +71,14 @@ impl Results for Numbers {
     }
 
     fn tables(&self, ids: &[&str], options: &Options) -> Vec<Table> {
-        tables::build(&self.data, &self.published, options, ids)
+        tables::build(self, options, ids)
     }
 
     fn claims(&self, options: &Options) -> Vec<Finding> {
-        claims::judge(&self.data, &self.published, options.device.unwrap_or(0))
+        let device = options.device.unwrap_or(0);
+        let mut findings = claims::judge(&self.data, &self.published, device);
+        findings.extend(claims::by_model(&self.modelled, &self.published, device));
+        findings
     }
 
     fn figures(&self) -> Result<(Vec<Figure>, Vec<Missing>)> {

@@ -17,6 +17,12 @@ pub const GTX280: &str = "GTX280";
 /// The slower one, of tables 5.7 and B.4 to B.6 and of figure 5.2.
 pub const GT8600: &str = "8600GT";
 
+/// The index of a card by its full name.
+pub fn device_of(gpu: &str) -> Option<usize> {
+    let name = gpu.replace(' ', "");
+    super::SOURCE.devices.iter().position(|device| name.ends_with(device))
+}
+
 /// A file of `results/thesis-2009`, by its name there.
 macro_rules! file {
     ($name:literal) => {

@@ -103,6 +103,26 @@ pub struct Tile {
 /// Frames that are rendered or counted, not timed, are split into bands of about this many pixels.
 pub(crate) const BAND_PIXELS: u32 = 262_144;
 
+/// The warps of a frame whose work is counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Warps {
+    /// Lanes of a warp.
+    pub width: u32,
+    /// Those of one in so many stripes of [`STRIPE`] work-groups, in each row of work-groups from another one on; 1 for
+    /// all.
+    pub every: u32,
+}
+
+/// Work-groups of a stripe.
+pub const STRIPE: u32 = 8;
+
+impl Warps {
+    /// All warps of a frame.
+    pub fn all(width: u32) -> Warps {
+        Warps { width, every: 1 }
+    }
+}
+
 /// Splits an image into about `across` x `down` tiles of whole work-groups, row by row.
 pub fn tiles(size: Size, across: u32, down: u32, group: Group) -> Vec<Tile> {
     let columns = size.width.div_ceil(across.max(1)).next_multiple_of(group.width);
@@ -208,11 +228,11 @@ pub trait Prepared {
         band: &mut dyn FnMut(u32, &[CountedPixel]),
     ) -> Result<()>;
 
-    /// What warps of `width` lanes issue for one frame, by ray type: on the CPU.
+    /// What warps issue for one frame, by ray type: on the CPU.
     ///
     /// # Errors
-    /// [`crate::Error::Unsupported`] where that is not modelled.
-    fn in_warps(&mut self, _config: Config, _view: &View, _size: Size, _width: u32) -> Result<ByRayType<Sums>> {
+    /// [`Error::Refused`] where that is not modelled.
+    fn in_warps(&mut self, _config: Config, _view: &View, _size: Size, _warps: Warps) -> Result<ByRayType<Sums>> {
         Err(Error::unsupported("warps are counted by twins on the CPU"))
     }
 

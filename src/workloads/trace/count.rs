@@ -68,6 +68,11 @@ macro_rules! counters {
             /// What only a replay in warps needs.
             #[inline(always)]
             fn mark(&mut self, _mark: Mark) {}
+
+            /// The node, cell, leaf or triangle reference that is read for what was reported last. Only a replay in
+            /// warps needs it.
+            #[inline(always)]
+            fn read(&mut self, _index: u32) {}
         }
 
         impl Count for CountOff {

@@ -8,10 +8,10 @@ use crate::scene::Scene;
 use crate::workloads::trace::backend::*;
 use crate::workloads::trace::count::{CountOff, Tally};
 use crate::workloads::trace::given::{TraceRay, trace_group};
-use crate::workloads::trace::method::Group;
+use crate::workloads::trace::method::{Group, TriangleLayout};
 use crate::workloads::trace::path::Frame;
 use crate::workloads::trace::render::render_group;
-use crate::workloads::trace::simt::{self, InWarps, Sums};
+use crate::workloads::trace::simt::{self, InWarps, Sums, TestReads};
 use crate::workloads::trace::staged::{Waiting, bounce_group, primary_group};
 use crate::workloads::trace::traverse::{GROUP, STACK_SIZE, Traverse, Traverser, Triangles};
 use crate::workloads::trace::{Method, Structure, Traversal};
@@ -205,7 +205,12 @@ impl<'a> CpuPrepared<'a> {
             return Err(Error::unsupported(format!("warps of a work-group of {width}x{height} are not modelled")));
         }
         let group = simt::Group { size: frame.group.size(), width };
-        Ok(InWarps::new(&*self.traversal, lockstep(&self.method.parameters), group))
+        // Counts do not depend on a device: `auto` is what a GPU does
+        let tests = match self.method.triangles {
+            TriangleLayout::LeafOrder => TestReads::LeafOrder,
+            TriangleLayout::Indexed | TriangleLayout::Auto => TestReads::Indexed(self.triangles.triangle_refs),
+        };
+        Ok(InWarps::new(&*self.traversal, lockstep(&self.method.parameters), group, tests))
     }
 
     fn frame<'f>(&self, config: Config, view: &'f View, size: Size) -> Frame<'f>
@@ -250,12 +255,22 @@ impl Prepared for CpuPrepared<'_> {
         Ok(())
     }
 
-    fn in_warps(&mut self, config: Config, view: &View, size: Size, width: u32) -> Result<ByRayType<Sums>> {
+    fn in_warps(&mut self, config: Config, view: &View, size: Size, warps: Warps) -> Result<ByRayType<Sums>> {
         let frame = self.frame(config, view, size);
-        let in_warps = self.warps_of(&frame, width)?;
-        for tile in tiles(size, 1, (size.pixels() as u32).div_ceil(BAND_PIXELS), frame.group) {
+        let in_warps = self.warps_of(&frame, warps.width)?;
+        let count = |tile: Tile| {
             let mut out = vec![(); (tile.rows * size.width) as usize];
             self.render::<Counters, _>(&in_warps, &frame, tile, &mut out, |_| ());
+        };
+        if warps.every == 1 {
+            let down = (size.pixels() as u32).div_ceil(BAND_PIXELS);
+            tiles(size, 1, down, frame.group).into_iter().for_each(count);
+        } else {
+            let across = size.width.div_ceil(STRIPE * frame.group.width);
+            let stripes = tiles(size, across, size.height.div_ceil(frame.group.height), frame.group);
+            let place = |tile: &Tile| tile.column / (STRIPE * frame.group.width) + tile.row / frame.group.height;
+            let counted = stripes.into_par_iter().filter(|tile| place(tile).is_multiple_of(warps.every));
+            self.device.pool().install(|| counted.for_each(count));
         }
         in_warps.sums().map_err(Error::Device)
     }

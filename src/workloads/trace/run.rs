@@ -1,6 +1,6 @@
 //! A structure with a traversal on a device: its cases verified, counted and run.
 
-use super::backend::{Backend, Pixel, Prepared, Size};
+use super::backend::{Backend, Pixel, Prepared, Size, Warps};
 use super::case::TraceCase;
 use super::counting;
 use super::input::TraceInput;
@@ -130,7 +130,7 @@ impl<'a> TraceRun<'a> {
         let mut sums = ByRayType::<Sums>::default();
         for view in &self.input.path(case)?.views {
             self.input.context.check_interrupt()?;
-            let of_frame = twin.in_warps(case.config, view, case.size, width)?;
+            let of_frame = twin.in_warps(case.config, view, case.size, Warps::all(width))?;
             sums.iter_mut().zip(&of_frame).for_each(|(sum, frame)| *sum = sum.with(frame));
         }
         Ok(sums)

@@ -222,6 +222,7 @@ impl Triangles<'_> {
     ) -> bool {
         for (triangle_ref, index) in self.triangle_refs[first as usize..][..count as usize].iter().zip(first..) {
             counted.test();
+            counted.read(index);
             if let Some(hit) = self.hit(ray, triangle_ref, best.t)
                 && (hit.t < best.t || (!ANY && triangle_ref.triangle < best.triangle))
             {

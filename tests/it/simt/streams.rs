@@ -1,13 +1,14 @@
 //! Hand-made events.
 
-use rtbench::workloads::trace::Selection;
+use rtbench::workloads::trace::count::Count;
 use rtbench::workloads::trace::simt::{
     Event::{self, *},
     Group, Lockstep,
     Part::{All, One},
-    Stream, Sums, choice, maybe, repeat, replay,
+    Read, Stream, Sums, TestReads, choice, maybe, repeat, replay,
 };
 use rtbench::workloads::trace::traverse::Lanes;
+use rtbench::workloads::trace::{Selection, TriangleRef};
 
 const WHILE_WHILE: Lockstep = Lockstep::apart(&[repeat(&[
     repeat(&[One(Step), repeat(&[One(Pop)])]),
@@ -25,15 +26,16 @@ const PACKET: Lockstep = Lockstep::together(&[repeat(&[
 ])]);
 
 fn streams(lanes: &[&[Event]]) -> Lanes<Stream> {
-    std::array::from_fn(|lane| Stream {
-        events: lanes.get(lane).map_or(Vec::new(), |e| e.to_vec()),
-        ..Stream::default()
+    std::array::from_fn(|lane| {
+        let mut stream = Stream::default();
+        lanes.get(lane).into_iter().copied().flatten().for_each(|&event| stream.push(event));
+        stream
     })
 }
 
 fn issue(lockstep: &Lockstep, group: Group, alive: u64, lanes: &[&[Event]]) -> Sums {
     let mut sums = Sums::default();
-    replay(lockstep, group, alive, &streams(lanes), &mut sums).unwrap();
+    replay(lockstep, group, alive, (&streams(lanes), TestReads::LeafOrder), &mut sums).unwrap();
     sums
 }
 
@@ -124,7 +126,7 @@ fn registered_loops_are_those_of_the_kernels() {
 #[test]
 fn a_wrong_reconvergence_is_noticed() {
     let fits = |lockstep: &Lockstep, lanes: &[&[Event]]| {
-        replay(lockstep, FOUR, u64::MAX, &streams(lanes), &mut Sums::default())
+        replay(lockstep, FOUR, u64::MAX, (&streams(lanes), TestReads::LeafOrder), &mut Sums::default())
     };
     assert_eq!(fits(&WHILE_WHILE, &[&[Step, Leaf, Test, Pop, Leaf]]), Ok(()));
     let message = fits(&WHILE_WHILE, &[&[], &[Step, Leaf, Test, Restart]]).unwrap_err();
@@ -160,4 +162,68 @@ fn sums_are_read_as_they_are_written() {
     let read = Sums::read(|name| values.iter().find(|(known, _)| known == name).map(|(_, value)| *value));
     assert_eq!(read, Some(sums));
     assert_eq!(Sums::read(|_| None), None);
+}
+
+#[test]
+fn loads_are_counted_in_distinct_segments() {
+    // Nodes of 16 bytes; what three lanes read, in turns of the loop over steps
+    const LOOP: Lockstep = Lockstep::apart(&[repeat(&[One(Step)]), maybe(&[One(Leaf), repeat(&[One(Test)])])])
+        .reading(&[Read { event: Step, stride: 16, bytes: 16 }, Read { event: Leaf, stride: 32, bytes: 64 }]);
+    let mut streams = streams(&[]);
+    for (lane, reads) in [(0, &[0_u32, 9][..]), (1, &[1, 2]), (2, &[8])] {
+        for &index in reads {
+            streams[lane].push(Step);
+            streams[lane].read(index);
+        }
+    }
+    // The first lane's leaf is read from byte 96 to 160, the second one's has no index
+    streams[0].push(Leaf);
+    streams[0].read(3);
+    streams[1].push(Leaf);
+    let loads = |streams: &Lanes<Stream>, group, tests| {
+        let mut sums = Sums::default();
+        replay(&LOOP, group, 0b111, (streams, tests), &mut sums).unwrap();
+        (sums.loads.issued, sums.loads.segments)
+    };
+    // Bytes 0, 16, 128; then 144, 32; then the leaf: by 32 bytes 2 + 2 + 2, by 64 2 + 2 + 2, by 128 2 + 2 + 2
+    assert_eq!(loads(&streams, FOUR, TestReads::LeafOrder), (3, [6, 6, 6]));
+    // By warps of one lane a load each, and the leaf's 64 bytes lie across a border of each size
+    assert_eq!(loads(&streams, Group { size: 64, width: 1 }, TestReads::LeafOrder), (6, [7, 7, 7]));
+    // Tests of references 0 and 2 (one segment of 32 bytes each), whose vertices of 32 bytes are 0, 1, 2 and 0, 4, 2
+    let reference = |vertices| TriangleRef { vertices, triangle: 0 };
+    let refs = [reference([0, 1, 2]), reference([9; 3]), reference([0, 4, 2])];
+    let mut tests = self::streams(&[]);
+    for (lane, index) in [(0, 0), (1, 2)] {
+        tests[lane].push(Leaf);
+        tests[lane].push(Test);
+        tests[lane].read(index);
+    }
+    assert_eq!(loads(&tests, FOUR, TestReads::Indexed(&refs)), (4, [2 + 1 + 2 + 1, 1 + 1 + 2 + 1, 1 + 1 + 2 + 1]));
+    // In leaf order 48 bytes from 0 and from 96 on
+    assert_eq!(loads(&tests, FOUR, TestReads::LeafOrder), (1, [4, 3, 2]));
+}
+
+#[test]
+fn all_warps_of_a_group_load_what_it_visits() {
+    let together = PACKET.reading(&[Read { event: Step, stride: 32, bytes: 64 }]);
+    let mut streams = streams(&[]);
+    streams[0].push(Step);
+    streams[0].read(2);
+    let mut sums = Sums::default();
+    let group = Group { size: 16, width: 4 };
+    replay(&together, group, 1, (&streams, TestReads::LeafOrder), &mut sums).unwrap();
+    assert_eq!((sums.loads.issued, sums.loads.segments), (4, [8, 4, 4]));
+    // 18 tests are shared out among 8 invocations in two warps: 3 turns, the last one by one warp
+    let mut streams = self::streams(&[]);
+    for lane in 0..2 {
+        streams[lane].push(Step);
+        for index in 0..9 {
+            streams[lane].push(Test);
+            streams[lane].read(index);
+        }
+    }
+    let mut sums = Sums::default();
+    let group = Group { size: 8, width: 4 };
+    replay(&registered("grid-coop"), group, 0b11, (&streams, TestReads::LeafOrder), &mut sums).unwrap();
+    assert_eq!(sums.loads.issued, 5);
 }

@@ -2,8 +2,8 @@
 
 use rtbench::camera::CameraPath;
 use rtbench::scene::{Scene, load};
-use rtbench::workloads::trace::backend::{Backend, Config, Counters, RAY_TYPES, Size};
-use rtbench::workloads::trace::simt::{EVENTS, Sums};
+use rtbench::workloads::trace::backend::{Backend, Config, Counters, RAY_TYPES, Size, Warps};
+use rtbench::workloads::trace::simt::{EVENTS, Event, Sums};
 use rtbench::workloads::trace::{CpuBackend, Selection, algorithms};
 
 /// Not a multiple of the pixels of a work-group.
@@ -20,7 +20,7 @@ fn counted(
     let built = selection.build(scene, 0).unwrap();
     let mut prepared = cpu.prepare(scene, &*built.structure, selection.method()).unwrap();
     let view = CameraPath::for_scene(scene, true).views(scene, Some(1)).unwrap().remove(0);
-    let sums = prepared.in_warps(config, &view, SIZE, width).unwrap();
+    let sums = prepared.in_warps(config, &view, SIZE, Warps::all(width)).unwrap();
     let mut pixels = Vec::new();
     prepared.counted(config, &view, SIZE, &mut |_, band| pixels.extend(band.iter().map(|p| p.counters))).unwrap();
     (sums, pixels)
@@ -90,6 +90,11 @@ fn warps_of_one_lane_count_what_rays_count() {
                 // Where barriers keep a group together, all of its warps issue
                 if !selection.method().traversal.cooperative {
                     assert_eq!((sums.issued, sums.warps), (sums.lanes, of(kind, |c| c.rays)), "{name}");
+                    // Each event that reads something says what: a test reads a reference and three positions
+                    let method = selection.method();
+                    let reads = method.traversal.lockstep.unwrap()(&method.parameters).reads;
+                    let of_events: u64 = reads.iter().map(|read| sums.lanes[read.event as usize]).sum();
+                    assert_eq!(sums.loads.issued, of_events + 4 * sums.lanes[Event::Test as usize], "{name}");
                 }
             }
         }
@@ -129,7 +134,7 @@ fn what_is_not_modelled_is_refused() {
         let selection = Selection::parse(text).unwrap();
         let built = selection.build(&scene, 0).unwrap();
         let mut prepared = cpu.prepare(&scene, &*built.structure, selection.method()).unwrap();
-        let error = prepared.in_warps(Config::P, &view, SIZE, 32).unwrap_err().to_string();
+        let error = prepared.in_warps(Config::P, &view, SIZE, Warps::all(32)).unwrap_err().to_string();
         assert!(error.contains(words), "{text}: {error}");
     }
 }

@@ -9,6 +9,7 @@ mod empty; // tables without a measurement, devices and sizes that were chosen
 mod figures; // XML, what is drawn and what is not
 mod judging; // exceptions, margins, and what is not judged
 mod latex; // what a longtable has to have
+mod modelled; // claims and the table by the SIMT model
 mod published; // every row parses; the memory model against all 27 sizes
 mod report; // one page, nothing from outside, everything escaped
 mod runs; // which scene, device, variant and conditions a record belongs to

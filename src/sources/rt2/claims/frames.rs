@@ -29,7 +29,7 @@ impl Frames<'_> {
     }
 
     fn write(&self, number: Uncertain) -> String {
-        let form = if self.cost == Cost::Time { Form::Time } else { Form::Fixed(2) };
+        let form = if self.cost == Cost::Steps { Form::Fixed(2) } else { Form::Time };
         form.write(number.value)
     }
 

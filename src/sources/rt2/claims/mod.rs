@@ -11,7 +11,7 @@ use super::models::SceneKey;
 use super::published::Published;
 use super::{DOCUMENT, SOURCE};
 use crate::compare::judge::Outcome;
-use crate::sources::claims::{Basis, Case, Finding, Grounds, Statement};
+use crate::sources::claims::{self, Basis, Case, Finding, Grounds, Statement};
 use list::{CLAIMS, Cases, Claim};
 
 /// A case of a scene.
@@ -46,6 +46,17 @@ pub fn judge(data: Option<&Data>, published: &Published) -> Vec<Finding> {
         }
     }
     findings
+}
+
+/// Judges the claims about frame times by the SIMT model, once for each of its GPUs.
+pub fn by_model(modelled: &[Data], published: &Published) -> Vec<Finding> {
+    let of = |claim: &'static Claim, data: &Data| {
+        let Cases::Frames(cases) = claim.cases else { return None };
+        let frames = Frames { data, device: 0, size: data.size(0, published.size(), None), cost: Cost::Work };
+        let printed = (claim.printed)(published);
+        claims::by_model(claim.statement(), &data.devices[0].label, cases(&frames, published), &printed, claim.remark)
+    };
+    CLAIMS.iter().flat_map(|claim| modelled.iter().filter_map(move |data| of(claim, data))).collect()
 }
 
 fn of_device(

@@ -53,6 +53,13 @@ pub fn ms(value: impl Into<Number>) -> String {
     format!("{} ms", value.into().write(Form::Time))
 }
 
+impl Data {
+    /// Writes a frame's time, or work in its place, for a case's numbers.
+    pub fn write_time(&self, value: impl Into<Number>) -> String {
+        if self.modelled { format!("{} M", value.into().write(Form::Time)) } else { ms(value) }
+    }
+}
+
 /// Scenes that structures are built of: a camera path makes no other scene.
 fn scenes(data: &Data) -> impl Iterator<Item = &SceneKey> {
     data.scenes.iter().map(|s| &s.key).filter(|key| key.built() == *key)
@@ -156,7 +163,7 @@ fn by_trio(
         for config in configs {
             let Some(trio) = trios(data, device, scene, *config).pop() else { continue };
             let outcome = judge(trio.map(|f| frame_time(data, f)));
-            let [grid, kdtree, bvh] = trio.map(|f| ms(f.times()[2]));
+            let [grid, kdtree, bvh] = trio.map(|f| data.write_time(f.times()[2]));
             let numbers = format!("grid {grid}, kd-tree {kdtree}, BVH {bvh} at {side}x{side}", side = trio[0].width);
             cases.push(case(scene, format!("{config:?}"), outcome, numbers));
         }
@@ -210,10 +217,16 @@ fn gains(data: &Data, device: usize) -> Vec<(&SceneKey, Config, Gains)> {
     all
 }
 
-fn gain_case(scene: &SceneKey, config: Config, outcome: Outcome, (gains, small, large): &Gains) -> Case {
+fn gain_case(
+    data: &Data,
+    (scene, config): (&SceneKey, Config),
+    outcome: Outcome,
+    (gains, small, large): &Gains,
+) -> Case {
+    let what = if data.modelled { "work" } else { "time" };
     let [grid, kdtree, bvh] = gains.map(|g| g.value);
     let numbers = format!(
-        "from {small} to {large} pixels a side the time per ray falls by grid {grid:.2}, kd-tree {kdtree:.2}, BVH \
+        "from {small} to {large} pixels a side the {what} per ray falls by grid {grid:.2}, kd-tree {kdtree:.2}, BVH \
          {bvh:.2} times"
     );
     case(scene, format!("{config:?}"), outcome, numbers)
@@ -223,7 +236,7 @@ fn gain_case(scene: &SceneKey, config: Config, outcome: Outcome, (gains, small, 
 pub fn time_per_ray_falls(data: &Data, device: usize) -> Vec<Case> {
     let one = Uncertain::exact(1.0);
     let case = |(scene, config, g): (&SceneKey, Config, Gains)| {
-        gain_case(scene, config, all(g.0.map(|gain| less(one, gain))), &g)
+        gain_case(data, (scene, config), all(g.0.map(|gain| less(one, gain))), &g)
     };
     gains(data, device).into_iter().map(case).collect()
 }
@@ -232,7 +245,7 @@ pub fn time_per_ray_falls(data: &Data, device: usize) -> Vec<Case> {
 pub fn bvh_gains_most(data: &Data, device: usize) -> Vec<Case> {
     let case = |(scene, config, g): (&SceneKey, Config, Gains)| {
         let [grid, kdtree, bvh] = g.0;
-        gain_case(scene, config, all([less(grid, bvh), less(kdtree, bvh)]), &g)
+        gain_case(data, (scene, config), all([less(grid, bvh), less(kdtree, bvh)]), &g)
     };
     gains(data, device).into_iter().map(case).collect()
 }

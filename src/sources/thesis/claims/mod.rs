@@ -11,19 +11,25 @@ pub use occupancy::ABOUT_20_PCT;
 pub use resolution::{FAR, NEAR};
 
 use super::data::{Data, Failure, Frame};
+use super::published;
 use super::scenes::SceneKey;
 use super::{DOCUMENT, SOURCE};
 use crate::compare::judge::{Outcome, UNKNOWN_NOISE_PCT, Uncertain};
-use crate::sources::claims::{Basis, Case, Finding, Grounds, Statement};
-use list::{CLAIMS, Claim};
+use crate::sources::claims::{self, Basis, Case, Finding, Grounds, Statement};
+use crate::workloads::trace::simt::model::CLOSE;
+use list::{CLAIMS, Claim, REGISTERS};
 
 /// A case of a scene.
 fn case(scene: &SceneKey, what: impl Into<String>, outcome: Outcome, numbers: String) -> Case {
     Case { scene: scene.to_string(), what: what.into(), outcome, numbers }
 }
 
-/// A mean frame time with its noise. That of a printed time is unknown, and none is assumed in addition to the margin.
+/// A mean frame time with its noise, or work in its place. The noise of a printed time is unknown, and none is assumed
+/// in addition to the margin.
 fn frame_time(data: &Data, frame: &Frame) -> Uncertain {
+    if data.modelled {
+        return Uncertain::modelled(frame.mean_ms, CLOSE - 1.0);
+    }
     let unknown = if data.published { 0.0 } else { UNKNOWN_NOISE_PCT };
     Uncertain::time(frame.mean_ms, frame.noise_pct.unwrap_or(unknown))
 }
@@ -40,6 +46,28 @@ pub fn judge(data: &Data, published: &Data, published_device: usize) -> Vec<Find
     findings
 }
 
+/// Judges the claims about a GPU by the SIMT model, once for each of its GPUs. Exceptions are those of the same card,
+/// if the thesis printed its times, otherwise of a published device.
+pub fn by_model(modelled: &[Data], published: &Data, published_device: usize) -> Vec<Finding> {
+    let of = |(claim, data): (&'static Claim, &Data)| {
+        let gpu = &data.devices[0].label;
+        let printed = (claim.cases)(published, published::device_of(gpu).unwrap_or(published_device));
+        claims::by_model(statement(claim), gpu, (claim.cases)(data, 0), &printed, claim.remark)
+    };
+    let claims = CLAIMS.iter().filter(|claim| claim.basis == Basis::FrameTimes && claim.id != REGISTERS);
+    claims.flat_map(|claim| modelled.iter().map(move |data| (claim, data))).filter_map(of).collect()
+}
+
+fn statement(claim: &Claim) -> Statement {
+    Statement {
+        source: SOURCE.name,
+        document: DOCUMENT,
+        claim: claim.id,
+        statement: claim.statement,
+        needs: claim.needs,
+    }
+}
+
 fn finding(claim: &Claim, data: &Data, device: usize, printed: &[Case]) -> Finding {
     let by_time = claim.basis == Basis::FrameTimes;
     let of = by_time.then(|| &data.devices[device]);
@@ -49,14 +77,7 @@ fn finding(claim: &Claim, data: &Data, device: usize, printed: &[Case]) -> Findi
         Some(by_counts) => by_counts(data, device),
         None => (claim.cases)(data, device),
     };
-    let statement = Statement {
-        source: SOURCE.name,
-        document: DOCUMENT,
-        claim: claim.id,
-        statement: claim.statement,
-        needs: claim.needs,
-    };
-    let found = Finding::of(statement, basis, cases, printed);
+    let found = Finding::of(statement(claim), basis, cases, printed);
     Finding {
         device: of.map_or_else(String::new, |device| device.label.clone()),
         without_gpu,

@@ -1,6 +1,6 @@
 //! Cases of claims 7, 8, 9 and 11: one structure against itself with another option.
 
-use super::cases::{changed, is_shiny, ms};
+use super::cases::{changed, is_shiny};
 use super::{Case, case as new_case, frame_time};
 use crate::compare::judge::{Uncertain, less, less_by};
 use crate::sources::thesis::data::{CONFIGS, Counts, Data, config_adding};
@@ -17,10 +17,10 @@ fn beats(data: &Data, device: usize, structure: &str, config: Config, option: (&
         let (a, b) = (frame_time(data, plain), frame_time(data, other));
         let numbers = format!(
             "default {}, {}={} {} ({:.2} times) at {side}x{side}",
-            ms(a.value),
+            data.write_time(a.value),
             option.0,
             option.1,
-            ms(b.value),
+            data.write_time(b.value),
             b.value / a.value,
             side = plain.width
         );
@@ -125,7 +125,8 @@ pub fn other_grid(data: &Data, device: usize, structure: &str) -> Vec<Case> {
             let Some((plain, other)) = pair else { continue };
             let (a, b) = (frame_time(data, plain), frame_time(data, other));
             let side = plain.width;
-            let numbers = format!("grid {}, {structure} {} at {side}x{side}", ms(a.value), ms(b.value));
+            let numbers =
+                format!("grid {}, {structure} {} at {side}x{side}", data.write_time(a.value), data.write_time(b.value));
             cases.push(new_case(scene, format!("{config:?}"), less(a, b), numbers));
         }
     }

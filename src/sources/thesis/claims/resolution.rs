@@ -38,6 +38,7 @@ fn rule_cases(
     let scenes = data.scenes.iter().map(|s| &s.key).filter(|key| of(key));
     let case = |key: &SceneKey| {
         let [(rule, cells), (best, best_cells)] = rows(key)?;
+        let unit = if data.modelled { "M" } else { unit };
         let numbers = format!(
             "{cells} cells on the shortest side by the rule: {:.2} {unit}; best: {best_cells} cells, {:.2} {unit} \
              ({:.2} times)",

@@ -17,6 +17,8 @@ pub struct Context<'a> {
     pub data: &'a Data,
     /// The published numbers.
     pub published: &'a Data,
+    /// By the SIMT model of each GPU.
+    pub modelled: &'a [Data],
     /// The options.
     pub options: &'a Options,
     /// Side of the image in tables of one size.

@@ -12,7 +12,7 @@ use crate::workloads::trace::simt::{
     Event::{Leaf, Pop, Step, Test},
     Lockstep,
     Part::One,
-    choice, maybe, repeat,
+    Read, choice, maybe, repeat,
 };
 use crate::workloads::trace::traverse::{Best, STACK_SIZE, TraverseIndependent, Triangles};
 
@@ -40,7 +40,8 @@ pub static STACK: Traversal = Traversal {
 const LOCKSTEP: Lockstep = Lockstep::apart(&[repeat(&[choice(&[
     maybe(&[One(Leaf), repeat(&[One(Test)]), repeat(&[One(Pop)])]),
     maybe(&[One(Step), repeat(&[One(Pop)])]),
-])])]);
+])])])
+.reading(&[Read::one::<BihNode>(Step), Read::one::<BihNode>(Leaf)]);
 
 struct BihStack<'a> {
     triangles: Triangles<'a>,
@@ -122,12 +123,14 @@ impl TraverseIndependent for BihStack<'_> {
             let node = self.tree.nodes[walk.at.node as usize];
             if node.is_leaf() {
                 count.leaf();
+                count.read(walk.at.node);
                 if self.triangles.test::<ANY, C>(ray, node.first(), node.count(), &mut best, count) {
                     break;
                 }
                 goes_on = walk.pop(best.t, count);
             } else {
                 count.inner();
+                count.read(walk.at.node);
                 goes_on = walk.descend(ray, node, best.t, count);
             }
         }

@@ -8,6 +8,7 @@ use crate::math::Ray;
 use crate::workloads::trace::algorithm::{Parameter, Parameters};
 use crate::workloads::trace::backend::Prepared;
 use crate::workloads::trace::bvh::Bvh;
+use crate::workloads::trace::bvh::BvhNode;
 use crate::workloads::trace::bvh::stack::{Down, EMPTY, InPairs, LEAF, Stack, StackSearch, leaf_triangle_refs};
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::cpu::TwinInput;
@@ -17,7 +18,7 @@ use crate::workloads::trace::simt::{
     Event::{Child, Leaf, Pop, Step, Test, Turn},
     Lockstep, Mark,
     Part::One,
-    maybe, repeat,
+    Read, maybe, repeat,
 };
 use crate::workloads::trace::traverse::{Best, TraverseIndependent};
 
@@ -97,13 +98,17 @@ const SPECULATIVE: Lockstep = Lockstep::apart(&[repeat(&[
     repeat(&[One(Pop)]),
 ])]);
 
+/// Both children of a node.
+const PAIRS: &[Read] = &[Read::pair::<BvhNode>(Step)];
+
 /// How lanes wait for each other.
 pub(super) fn lockstep(parameters: &Parameters) -> Lockstep {
-    match Form::from(parameters) {
+    let loops = match Form::from(parameters) {
         Form::WhileWhile => WHILE_WHILE,
         Form::IfIf => IF_IF,
         Form::Speculative => SPECULATIVE,
-    }
+    };
+    loops.reading(PAIRS)
 }
 
 /// The twin with the loops of the method.

@@ -14,7 +14,7 @@ use crate::workloads::trace::simt::{
     Event::{Leaf, Pop, Step, Test, Vote},
     Lockstep, Mark,
     Part::{All, One},
-    choice, maybe, repeat,
+    Read, choice, maybe, repeat,
 };
 use crate::workloads::trace::traverse::{Best, GROUP, Lanes, STACK_SIZE, Traverse, Triangles, bits};
 
@@ -46,7 +46,8 @@ pub static SHARED_STACK: Traversal = Traversal {
 const LOCKSTEP: Lockstep = Lockstep::together(&[repeat(&[
     choice(&[maybe(&[One(Leaf), repeat(&[One(Test)])]), maybe(&[All(Step), maybe(&[All(Vote)])])]),
     maybe(&[All(Pop)]),
-])]);
+])])
+.reading(&[Read::pair::<BvhNode>(Step)]);
 
 /// In the original, rays that hit neither child vote as well, by which box begins first on their line.
 const VOTE: OptionInfo = OptionInfo::new(
@@ -123,6 +124,7 @@ impl<'a> Bvh<'a> {
         let mut votes = 0; // for the right child first
         for lane in bits(alive) {
             counters[lane].inner();
+            counters[lane].read(packet.next);
             counters[lane].box_tests(2);
             let l = ray_box(&rays[lane], left_min, left_max);
             let r = ray_box(&rays[lane], right_min, right_max);

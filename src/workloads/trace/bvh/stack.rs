@@ -203,6 +203,7 @@ impl<P: Pairs> InPairs<'_, P> {
     pub(super) fn step_down<C: Count>(&self, ray: &Ray, t: f32, from: u32, stack: &mut Stack, count: &mut C) -> u32 {
         let pairs = self.0;
         count.inner();
+        count.read(from);
         count.box_tests(2);
         let [left, right] = pairs.children(from);
         let (min, max) = pairs.corners(left);

@@ -18,7 +18,7 @@ use crate::workloads::trace::simt::{
     Event::{Child, Leaf, Pop, Step, Test},
     Lockstep,
     Part::One,
-    maybe, repeat,
+    Read, maybe, repeat,
 };
 use crate::workloads::trace::structure::finite;
 use crate::workloads::trace::traverse::{Best, STACK_SIZE, TraverseIndependent, Triangles};
@@ -58,7 +58,8 @@ const LOCKSTEP: Lockstep = Lockstep::apart(&[repeat(&[
     repeat(&[One(Child), maybe(&[One(Leaf)])]),
     repeat(&[One(Test)]),
     maybe(&[One(Pop)]),
-])]);
+])])
+.reading(&[Read::one::<CwNode>(Step)]);
 
 struct CwbvhStack<'a> {
     triangles: Triangles<'a>,
@@ -77,7 +78,6 @@ fn flipped_bits(direction: Vec3A) -> u32 {
 /// What the ray meets before `t`: inner children in bits 24 to 31, triangle references in the others.
 #[inline(always)]
 fn visit<C: Count>(ray: &Ray, node: &CwNode, t: f32, flips: u32, count: &mut C) -> u32 {
-    count.inner();
     let grid = node.grid();
     let mut hits = 0;
     for (i, place) in (0..WIDTH).zip(0..) {
@@ -110,6 +110,8 @@ impl TraverseIndependent for CwbvhStack<'_> {
         let mut index = 0;
         loop {
             let node = &self.tree.nodes[index as usize];
+            count.inner();
+            count.read(index);
             let hits = visit(&wide, node, best.t, flips, count);
             let mut triangles = hits & 0xff_ffff;
             while triangles != 0 {

@@ -6,6 +6,7 @@
 use crate::math::{MISS, Ray};
 use crate::workloads::trace::algorithm::{Algorithm, Traversal};
 use crate::workloads::trace::count::Count;
+use crate::workloads::trace::grid::Cell;
 use crate::workloads::trace::grid::dda::Grid;
 use crate::workloads::trace::grid::{BUILDER, KIND};
 use crate::workloads::trace::options::PACKET;
@@ -13,7 +14,7 @@ use crate::workloads::trace::simt::{
     Event::{Step, Test},
     Lockstep,
     Part::{One, Shared},
-    repeat,
+    Read, repeat,
 };
 use crate::workloads::trace::traverse::{Best, TraverseIndependent};
 
@@ -38,7 +39,8 @@ pub static COOP: Traversal = Traversal {
 };
 
 /// How its lanes wait for each other.
-const LOCKSTEP: Lockstep = Lockstep::together(&[repeat(&[repeat(&[One(Step)]), Shared(Test)])]);
+const LOCKSTEP: Lockstep =
+    Lockstep::together(&[repeat(&[repeat(&[One(Step)]), Shared(Test)])]).reading(&[Read::one::<Cell>(Step)]);
 
 /// See the module.
 pub struct GridCoop<'a> {
@@ -54,7 +56,7 @@ impl TraverseIndependent for GridCoop<'_> {
         };
         loop {
             count.inner();
-            let cell = self.grid.cell(walk.cell);
+            let cell = self.grid.cell(walk.cell, count);
             self.grid.triangles.test::<false, C>(ray, cell.first, cell.count, &mut best, count);
             let found = best.t < walk.t_next.min_element() || (ANY && best.t < limit);
             if found || !self.grid.advance(ray, &mut walk, &mut best, count) {

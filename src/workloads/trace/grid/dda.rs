@@ -13,7 +13,7 @@ use crate::workloads::trace::simt::{
     Event::{Step, Test},
     Lockstep,
     Part::One,
-    repeat,
+    Read, repeat,
 };
 use crate::workloads::trace::traverse::{Best, TraverseIndependent, Triangles};
 use glam::{IVec3, Vec3A};
@@ -39,7 +39,8 @@ pub static DDA: Traversal = Traversal {
 };
 
 /// How its lanes wait for each other.
-const LOCKSTEP: Lockstep = Lockstep::apart(&[repeat(&[One(Step), repeat(&[One(Test)])])]);
+const LOCKSTEP: Lockstep =
+    Lockstep::apart(&[repeat(&[One(Step), repeat(&[One(Test)])])]).reading(&[Read::one::<grid::Cell>(Step)]);
 
 /// See the module.
 pub struct Grid<'a> {
@@ -127,9 +128,10 @@ impl<'a> Grid<'a> {
     }
 
     #[inline]
-    pub(crate) fn cell(&self, cell: IVec3) -> grid::Cell {
+    pub(crate) fn cell<C: Count>(&self, cell: IVec3, count: &mut C) -> grid::Cell {
         let index = cell.x as usize
             + self.resolution.x as usize * (cell.y as usize + self.resolution.y as usize * cell.z as usize);
+        count.read(index as u32);
         self.grid.cells[index]
     }
 
@@ -175,7 +177,7 @@ impl<'a> Grid<'a> {
                     let place = IVec3::new(x, y, z);
                     if place != walk.cell && (place != last || leaves) {
                         count.inner();
-                        let cell = self.cell(place);
+                        let cell = self.cell(place, count);
                         self.triangles.test::<false, C>(ray, cell.first, cell.count, best, count);
                     }
                 }
@@ -194,7 +196,7 @@ impl TraverseIndependent for Grid<'_> {
         };
         loop {
             count.inner();
-            let cell = self.cell(walk.cell);
+            let cell = self.cell(walk.cell, count);
             if self.triangles.test::<ANY, C>(ray, cell.first, cell.count, &mut best, count) {
                 return best.triangle_ref;
             }

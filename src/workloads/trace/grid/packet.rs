@@ -7,6 +7,7 @@
 use crate::math::{Ray, ray_box};
 use crate::workloads::trace::algorithm::{Algorithm, Traversal};
 use crate::workloads::trace::count::Count;
+use crate::workloads::trace::grid::Cell;
 use crate::workloads::trace::grid::dda::Grid;
 use crate::workloads::trace::grid::{BUILDER, KIND};
 use crate::workloads::trace::options::PACKET;
@@ -14,7 +15,7 @@ use crate::workloads::trace::simt::{
     Event::{Step, Test, Turn},
     Lockstep, Mark,
     Part::{All, One},
-    repeat,
+    Read, repeat,
 };
 use crate::workloads::trace::traverse::{Best, GROUP, Lanes, Traverse, bits, set_of};
 use glam::{IVec3, Vec3A};
@@ -40,7 +41,8 @@ pub static SLICES: Traversal = Traversal {
 };
 
 /// How its lanes wait for each other.
-const LOCKSTEP: Lockstep = Lockstep::together(&[repeat(&[All(Turn), repeat(&[One(Step), repeat(&[One(Test)])])])]);
+const LOCKSTEP: Lockstep = Lockstep::together(&[repeat(&[All(Turn), repeat(&[One(Step), repeat(&[One(Test)])])])])
+    .reading(&[Read::one::<Cell>(Step)]);
 
 /// See the module.
 pub struct GridPacket<'a> {
@@ -194,10 +196,10 @@ impl Traverse for GridPacket<'_> {
                 for i in across.0..=across.1 {
                     let mut place = IVec3::ZERO;
                     (place[major], place[u], place[v]) = (slice, i, j);
-                    let cell = self.grid.cell(place);
                     for lane in bits(touching) {
                         let (counted, best) = (&mut counters[lane], &mut best[lane]);
                         counted.inner();
+                        let cell = self.grid.cell(place, counted);
                         self.grid.triangles.test::<false, C>(&rays[lane], cell.first, cell.count, best, counted);
                     }
                 }

@@ -10,13 +10,14 @@
 use crate::math::{MISS, Ray};
 use crate::workloads::trace::algorithm::{Parameter, Parameters, Traversal};
 use crate::workloads::trace::count::Count;
+use crate::workloads::trace::kdtree::KdNode;
 use crate::workloads::trace::kdtree::rope_layout::{KIND, NO_ROPE, RopeLeaf, RopeTree};
 use crate::workloads::trace::kdtree::search;
 use crate::workloads::trace::simt::{
     Event::{Fallback, Leaf, Pop, Restart, Rope, Step, Test},
     Lockstep,
     Part::One,
-    choice, maybe, repeat,
+    Read, choice, maybe, repeat,
 };
 use crate::workloads::trace::traverse::{Best, TraverseIndependent, Triangles};
 
@@ -41,7 +42,8 @@ const LOCKSTEP: Lockstep = Lockstep::apart(&[
             maybe(&[One(Step)]),
         ])]),
     ]),
-]);
+])
+.reading(&[Read::one::<KdNode>(Step), Read { event: Leaf, stride: 16, bytes: size_of::<RopeLeaf>() as u64 }]);
 
 /// See the module.
 pub struct KdRopes<'a> {
@@ -79,20 +81,21 @@ impl Exit {
 impl<'a> KdRopes<'a> {
     /// A traversal of a built tree with ropes.
     pub fn new(triangles: Triangles<'a>, ropes: &'a RopeTree) -> Self {
-        KdRopes { triangles, ropes, finish: search::KdTree::without_stack(triangles, &ropes.tree) }
+        KdRopes { triangles, ropes, finish: search::KdTree::without_stack(triangles, ropes) }
     }
 
-    /// Goes down from a node to the leaf that the ray is in from distance `t` on; `None` where it is in a plane of a
-    /// node above that leaf at exactly this distance.
+    /// Goes down from a node to the leaf that the ray is in from distance `t` on, with its first row; `None` where it
+    /// is in a plane of a node above that leaf at exactly this distance.
     #[inline(always)]
-    fn find_leaf<C: Count>(&self, ray: &Ray, start: u32, t: f32, count: &mut C) -> Option<&RopeLeaf> {
+    fn find_leaf<C: Count>(&self, ray: &Ray, start: u32, t: f32, count: &mut C) -> Option<(u32, &RopeLeaf)> {
         let (mut index, mut unsure) = (start, false);
         loop {
             let node = self.ropes.node(index);
             if node.is_leaf() {
-                return (!unsure).then(|| self.ropes.leaf_at(node.first()));
+                return (!unsure).then(|| (node.first(), self.ropes.leaf_at(node.first())));
             }
             count.inner();
+            count.read(index);
             let (t_from, t_to) = node.distances(ray);
             let (before, behind) = (t_from > t, t_to < t);
             unsure |= !(before || behind);
@@ -109,8 +112,9 @@ impl TraverseIndependent for KdRopes<'_> {
         };
         let mut best = Best::before(limit);
         let mut node = 0;
-        while let Some(leaf) = self.find_leaf(ray, node, t, count) {
+        while let Some((row, leaf)) = self.find_leaf(ray, node, t, count) {
             count.leaf();
+            count.read(row);
             if self.triangles.test::<ANY, C>(ray, leaf.first, leaf.count, &mut best, count) {
                 return best.triangle_ref;
             }

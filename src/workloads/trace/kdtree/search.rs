@@ -10,6 +10,7 @@ use crate::workloads::trace::algorithm::{Algorithm, Parameter, Parameters, Trave
 use crate::workloads::trace::backend::Prepared;
 use crate::workloads::trace::count::Count;
 use crate::workloads::trace::cpu::TwinInput;
+use crate::workloads::trace::kdtree::RopeTree;
 use crate::workloads::trace::kdtree::ropes::ROPES;
 use crate::workloads::trace::kdtree::stack::STACK;
 use crate::workloads::trace::kdtree::{BUILDER, KIND, KdNode, KdTree as Tree};
@@ -19,7 +20,7 @@ use crate::workloads::trace::simt::{
     Event::{Leaf, Pop, Restart, Step, Test},
     Lockstep,
     Part::One,
-    choice, maybe, repeat,
+    Read, choice, maybe, repeat,
 };
 use crate::workloads::trace::traverse::{Best, TraverseIndependent, Triangles};
 
@@ -56,7 +57,8 @@ pub static SEARCH: Traversal = Traversal {
 const LOCKSTEP: Lockstep = Lockstep::apart(&[repeat(&[choice(&[
     maybe(&[One(Leaf), repeat(&[One(Test)]), choice(&[maybe(&[One(Pop)]), maybe(&[One(Restart)])])]),
     maybe(&[One(Step)]),
-])])]);
+])])])
+.reading(&[Read::one::<KdNode>(Step), Read::one::<KdNode>(Leaf)]);
 
 /// Most entries of a short stack.
 const MAX_SHORT_STACK: u32 = 32;
@@ -115,6 +117,8 @@ fn twin(input: TwinInput<'_>) -> Result<Box<dyn Prepared + '_>> {
 pub struct KdTree<'a, const MOST: usize> {
     triangles: Triangles<'a>,
     tree: &'a Tree,
+    /// Where leaves are those of a tree with ropes.
+    ropes: Option<&'a RopeTree>,
     /// Entries of the short stack.
     short_stack: usize,
     pushdown: bool,
@@ -241,12 +245,18 @@ impl<'a, const MOST: usize> KdTree<'a, MOST> {
     fn of(input: &TwinInput<'a>) -> Result<Self> {
         let parameters = input.method.parameters;
         let (short_stack, pushdown) = (parameters.word("SHORT_STACK") as usize, parameters.flag("PUSHDOWN"));
-        Ok(KdTree { triangles: input.triangles(), tree: input.structure()?, short_stack, pushdown })
+        Ok(KdTree { triangles: input.triangles(), tree: input.structure()?, ropes: None, short_stack, pushdown })
     }
 
     /// A search that restarts after every leaf, at the deepest node above which it never had to branch.
-    pub(crate) fn without_stack(triangles: Triangles<'a>, tree: &'a Tree) -> Self {
-        KdTree { triangles, tree, short_stack: 0, pushdown: true }
+    pub(crate) fn without_stack(triangles: Triangles<'a>, ropes: &'a RopeTree) -> Self {
+        KdTree { triangles, tree: &ropes.tree, ropes: Some(ropes), short_stack: 0, pushdown: true }
+    }
+
+    /// The index of what is read for a leaf.
+    #[inline(always)]
+    fn leaf_index(&self, node: u32) -> u32 {
+        self.ropes.map_or(node, |ropes| ropes.node(node).first())
     }
 
     #[inline]
@@ -290,6 +300,7 @@ impl<const MOST: usize> KdTree<'_, MOST> {
             let node = self.tree.nodes[d.node as usize];
             if node.is_leaf() {
                 count.leaf();
+                count.read(self.leaf_index(d.node));
                 if self.triangles.test::<ANY, C>(ray, node.first(), node.count(), &mut best, count) {
                     return best.triangle_ref;
                 }
@@ -298,6 +309,7 @@ impl<const MOST: usize> KdTree<'_, MOST> {
                 }
             } else {
                 count.inner();
+                count.read(d.node);
                 d.descend(ray, node);
             }
         }

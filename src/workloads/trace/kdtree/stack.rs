@@ -8,7 +8,7 @@ use crate::workloads::trace::simt::{
     Event::{Leaf, Pop, Step, Test},
     Lockstep,
     Part::One,
-    maybe, repeat,
+    Read, maybe, repeat,
 };
 use crate::workloads::trace::traverse::{Best, STACK_SIZE, TraverseIndependent, Triangles};
 
@@ -24,7 +24,8 @@ pub static STACK: Traversal = Traversal {
 
 /// How its lanes wait for each other.
 const LOCKSTEP: Lockstep =
-    Lockstep::apart(&[repeat(&[repeat(&[One(Step)]), maybe(&[One(Leaf), repeat(&[One(Test)]), maybe(&[One(Pop)])])])]);
+    Lockstep::apart(&[repeat(&[repeat(&[One(Step)]), maybe(&[One(Leaf), repeat(&[One(Test)]), maybe(&[One(Pop)])])])])
+        .reading(&[Read::one::<KdNode>(Step), Read::one::<KdNode>(Leaf)]);
 
 /// See the module.
 pub struct KdStack<'a> {
@@ -66,6 +67,7 @@ impl<'a> KdStack<'a> {
                 return node;
             }
             count.inner();
+            count.read(part.node);
             let (t_from, t_to) = node.distances(ray);
             let (left, right) = (part.node + 1, node.right());
             let backwards = ray.inv_direction[node.axis()] < 0.0;
@@ -95,6 +97,7 @@ impl TraverseIndependent for KdStack<'_> {
         loop {
             let leaf = self.walk_to_leaf(ray, &mut walk, count);
             count.leaf();
+            count.read(walk.part.node);
             if self.triangles.test::<ANY, C>(ray, leaf.first(), leaf.count(), &mut best, count) {
                 return best.triangle_ref;
             }

@@ -10,6 +10,7 @@ pub use variant::{OPTION_AXES, split_variant, variant_of};
 
 use super::Properties;
 use super::rays::Config;
+use super::simt::Sums;
 use crate::device::KernelInfo;
 use crate::error::Result;
 use crate::record::journal::Journal;
@@ -192,6 +193,12 @@ pub struct ConfigurationRecord {
     #[serde(default, deserialize_with = "rows::first_ray_types")]
     #[schemars(with = "Option<[CounterSums; 3]>")]
     pub counters: Option<ByRayType<CounterSums>>,
+    /// Lanes of the warps whose work was to be counted; absent where none was, and in schema 1.
+    #[serde(skip)]
+    pub warp_width: Option<u32>,
+    /// What warps issue, by ray type, over all frames; absent where that was not counted, and in schema 1.
+    #[serde(skip)]
+    pub issued: Option<ByRayType<Sums>>,
     /// Sizes.
     pub memory: Memory,
     /// Build time in milliseconds.
@@ -287,6 +294,8 @@ impl ConfigurationRecord {
             kernel: None,
             dispatches: None,
             counters: None,
+            warp_width: None,
+            issued: None,
             memory: Memory::default(),
             build_ms: 0.0,
             build_threads: 0,

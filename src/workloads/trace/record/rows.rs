@@ -140,6 +140,7 @@ impl ConfigurationRecord {
         let (width, height) = key.axis("resolution").split_once('x')?;
         let sums = |ray: &str| CounterSums::read(|name| row.metric(Some(ray), name).and_then(Value::integer));
         let counters = RAY_TYPES.map(sums);
+        let issued = RAY_TYPES.map(|ray| Sums::read(|name| row.metric(Some(ray), name).and_then(Value::integer)));
         Some(ConfigurationRecord {
             scene: SceneRecord::from_input(journal.input(key, "scene")?),
             camera_path: PathRecord { name: path.name.clone(), hash: path.hash.clone() },
@@ -161,6 +162,8 @@ impl ConfigurationRecord {
             kernel: row.kernels.first().cloned(),
             dispatches: row.metric(None, "dispatches").and_then(Value::integer).map(|n| n as u32),
             counters: counters[0].map(|_| counters.map(Option::unwrap_or_default)),
+            warp_width: key.axis("warp_width").parse().ok(),
+            issued: issued.iter().any(Option::is_some).then(|| issued.map(Option::unwrap_or_default)),
             memory: memory_of(&row.metrics),
             build_ms: number(&row.metrics, "build_ms"),
             build_threads: integer(&row.metrics, "build_threads") as usize,

@@ -1,6 +1,7 @@
 //! How the lanes of a warp go through a kernel's loops, and the replay of their events by it.
 
-use super::stream::{EVENTS, Event, Stream};
+use super::reads::{Read, TestReads};
+use super::stream::{EVENTS, Event, NO_READ, Stream};
 use super::sums::Sums;
 use crate::workloads::trace::traverse::{GROUP, Lanes, bits};
 
@@ -28,17 +29,25 @@ pub struct Lockstep {
     pub parts: &'static [Part],
     /// True where barriers keep the warps of a work-group together; otherwise each goes through the parts alone.
     pub together: bool,
+    /// What its events read, but for tests, which read triangles.
+    pub reads: &'static [Read],
 }
 
 impl Lockstep {
     /// Warps go alone.
     pub const fn apart(parts: &'static [Part]) -> Lockstep {
-        Lockstep { parts, together: false }
+        Lockstep { parts, together: false, reads: &[] }
     }
 
     /// The warps of a work-group wait for each other.
     pub const fn together(parts: &'static [Part]) -> Lockstep {
-        Lockstep { parts, together: true }
+        Lockstep { parts, together: true, reads: &[] }
+    }
+
+    /// The same, with what its events read.
+    #[must_use]
+    pub const fn reading(self, reads: &'static [Read]) -> Lockstep {
+        Lockstep { reads, ..self }
     }
 }
 
@@ -97,10 +106,11 @@ pub fn replay(
     lockstep: &Lockstep,
     group: Group,
     alive: u64,
-    streams: &Lanes<Stream>,
+    (streams, tests): (&Lanes<Stream>, TestReads),
     sums: &mut Sums,
 ) -> Result<(), String> {
-    let mut replay = Replay { group, streams, next: [0; GROUP], at: [0; EVENTS.len()], sums };
+    let reads = lockstep.reads;
+    let mut replay = Replay { group, streams, reads, tests, next: [0; GROUP], at: [0; EVENTS.len()], sums };
     bits(alive).for_each(|lane| replay.arrive(lane));
     if lockstep.together {
         replay.sums.warps += if alive == 0 { 0 } else { group.warps().count() as u64 };
@@ -121,6 +131,8 @@ pub fn replay(
 struct Replay<'a> {
     group: Group,
     streams: &'a Lanes<Stream>,
+    reads: &'static [Read],
+    tests: TestReads<'a>,
     /// Of each lane, the number of its next event.
     next: [usize; GROUP],
     /// By event, the lanes whose next one it is.
@@ -151,12 +163,14 @@ impl Replay<'_> {
             match *part {
                 Part::One(event) => self.one(event, mask),
                 Part::All(event) => {
+                    self.load_all(event, mask);
                     let lanes = self.pass(event, mask);
                     if lanes != 0 {
                         self.sums.add(event, self.group.warps().count() as u64, u64::from(lanes.count_ones()));
                     }
                 }
                 Part::Shared(event) => {
+                    self.load_shared(event, mask);
                     let events: u64 = bits(mask).map(|lane| self.pass_all(event, lane)).sum();
                     let turns = events.div_ceil(u64::from(self.group.size));
                     self.sums.add(event, turns * self.group.warps().count() as u64, events);
@@ -204,10 +218,14 @@ impl Replay<'_> {
         lanes
     }
 
+    /// The number of events of a kind that follow each other.
+    fn following(&self, event: Event, lane: usize) -> usize {
+        self.streams[lane].events[self.next[lane]..].iter().take_while(|&&next| next == event).count()
+    }
+
     /// A lane passes all events of a kind that follow each other; their number.
     fn pass_all(&mut self, event: Event, lane: usize) -> u64 {
-        let following = &self.streams[lane].events[self.next[lane]..];
-        let count = following.iter().take_while(|&&next| next == event).count();
+        let count = self.following(event, lane);
         if count > 0 {
             self.at[event as usize] &= !(1 << lane);
             self.next[lane] += count;
@@ -217,6 +235,10 @@ impl Replay<'_> {
     }
 
     fn one(&mut self, event: Event, mask: u64) {
+        let at = mask & self.at[event as usize];
+        for warp in self.group.warps() {
+            self.load(event, bits(warp & at).map(|lane| (lane, 0)));
+        }
         let lanes = self.pass(event, mask);
         let warps = self.warps_of(lanes);
         self.sums.add(event, warps, u64::from(lanes.count_ones()));
@@ -226,12 +248,57 @@ impl Replay<'_> {
     fn many(&mut self, event: Event, mask: u64) {
         let lanes = mask & self.at[event as usize];
         for warp in self.group.warps().filter(|warp| warp & lanes != 0) {
+            let mut turns = [0; GROUP];
             let (mut most, mut sum) = (0, 0);
             for lane in bits(warp & lanes) {
-                let count = self.pass_all(event, lane);
-                (most, sum) = (most.max(count), sum + count);
+                turns[lane] = self.following(event, lane);
+                (most, sum) = (most.max(turns[lane]), sum + turns[lane]);
             }
-            self.sums.add(event, most, sum);
+            for turn in 0..most {
+                self.load(event, bits(warp & lanes).filter(|&lane| turn < turns[lane]).map(|lane| (lane, turn)));
+            }
+            bits(warp & lanes).for_each(|lane| {
+                self.pass_all(event, lane);
+            });
+            self.sums.add(event, most as u64, sum as u64);
+        }
+    }
+
+    /// What the lanes of a warp read for an event, of each lane the one that is so many behind its next one.
+    fn load(&mut self, event: Event, lanes: impl Iterator<Item = (usize, usize)>) {
+        let read = self.reads.iter().find(|read| read.event == event);
+        if read.is_none() && event != Event::Test {
+            return;
+        }
+        let (mut indices, mut length) = ([0; GROUP], 0);
+        let index = |(lane, behind): (usize, usize)| self.streams[lane].reads[self.next[lane] + behind];
+        for index in lanes.map(index).filter(|&index| index != NO_READ) {
+            indices[length] = index;
+            length += 1;
+        }
+        match read {
+            Some(read) => {
+                self.sums.loads.add(*read, &mut indices[..length]);
+            }
+            None => self.sums.loads.add_test(self.tests, &mut indices[..length]),
+        }
+    }
+
+    /// What every warp of the work-group reads for an event: one without a lane at it reads what the others do.
+    fn load_all(&mut self, event: Event, mask: u64) {
+        let at = mask & self.at[event as usize];
+        for warp in self.group.warps() {
+            let own = if warp & at == 0 { at & at.wrapping_neg() } else { warp & at };
+            self.load(event, bits(own).map(|lane| (lane, 0)));
+        }
+    }
+
+    /// What warps read for events that are shared out, in the order of lanes.
+    fn load_shared(&mut self, event: Event, mask: u64) {
+        let of_lane = |lane| (0..self.following(event, lane)).map(move |behind| (lane, behind));
+        let all: Vec<(usize, usize)> = bits(mask).flat_map(of_lane).collect();
+        for of_group in all.chunks(self.group.size as usize) {
+            of_group.chunks(self.group.width as usize).for_each(|warp| self.load(event, warp.iter().copied()));
         }
     }
 }

@@ -10,11 +10,13 @@
 
 mod lockstep;
 pub mod model;
+mod reads;
 mod stream;
 mod sums;
 mod warps;
 
 pub use lockstep::{Group, Lockstep, Part, choice, maybe, repeat, replay};
-pub use stream::{EVENTS, Event, Mark, Stream};
+pub use reads::{Loads, Read, SEGMENTS, TestReads};
+pub use stream::{EVENTS, Event, Mark, NO_READ, Stream};
 pub use sums::Sums;
 pub use warps::InWarps;

@@ -54,12 +54,25 @@ pub struct Stream {
     pub counters: Counters,
     /// In their order.
     pub events: Vec<Event>,
+    /// Of each event, the index of what it reads, or [`NO_READ`].
+    pub reads: Vec<u32>,
 }
 
+/// No index.
+pub const NO_READ: u32 = u32::MAX;
+
 impl Stream {
-    /// A ray that goes on counting.
-    pub fn from(counters: Counters) -> Stream {
-        Stream { counters, events: Vec::new() }
+    /// Begins anew, with a ray that goes on counting.
+    pub fn begin(&mut self, counters: Counters) {
+        self.counters = counters;
+        self.events.clear();
+        self.reads.clear();
+    }
+
+    /// Adds an event that reads nothing.
+    pub fn push(&mut self, event: Event) {
+        self.events.push(event);
+        self.reads.push(NO_READ);
     }
 }
 
@@ -69,31 +82,31 @@ impl Count for Stream {
     }
     fn inner(&mut self) {
         self.counters.inner();
-        self.events.push(Event::Step);
+        self.push(Event::Step);
     }
     fn leaf(&mut self) {
         self.counters.leaf();
-        self.events.push(Event::Leaf);
+        self.push(Event::Leaf);
     }
     fn test(&mut self) {
         self.counters.test();
-        self.events.push(Event::Test);
+        self.push(Event::Test);
     }
     fn pop(&mut self) {
         self.counters.pop();
-        self.events.push(Event::Pop);
+        self.push(Event::Pop);
     }
     fn restart(&mut self) {
         self.counters.restart();
-        self.events.push(Event::Restart);
+        self.push(Event::Restart);
     }
     fn rope(&mut self) {
         self.counters.rope();
-        self.events.push(Event::Rope);
+        self.push(Event::Rope);
     }
     fn fallback(&mut self) {
         self.counters.fallback();
-        self.events.push(Event::Fallback);
+        self.push(Event::Fallback);
     }
     // A part of a visit
     fn skip(&mut self) {
@@ -101,16 +114,21 @@ impl Count for Stream {
     }
     fn box_test(&mut self) {
         self.counters.box_test();
-        self.events.push(Event::Child);
+        self.push(Event::Child);
     }
     // A part of a visit: no loop
     fn box_tests(&mut self, tests: u32) {
         (0..tests).for_each(|_| self.counters.box_test());
     }
     fn mark(&mut self, mark: Mark) {
-        self.events.push(match mark {
+        self.push(match mark {
             Mark::Vote => Event::Vote,
             Mark::Turn => Event::Turn,
         });
+    }
+    fn read(&mut self, index: u32) {
+        if let Some(read) = self.reads.last_mut() {
+            *read = index;
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! Counts of warps.
 
+use super::reads::{Loads, SEGMENTS};
 use super::stream::{EVENTS, Event};
 
 /// What warps issued, summed over traversals.
@@ -11,6 +12,8 @@ pub struct Sums {
     pub issued: [u64; EVENTS.len()],
     /// By event, the lanes that took part.
     pub lanes: [u64; EVENTS.len()],
+    /// What they read.
+    pub loads: Loads,
 }
 
 impl Sums {
@@ -27,28 +30,37 @@ impl Sums {
             warps: self.warps + other.warps,
             issued: std::array::from_fn(|i| self.issued[i] + other.issued[i]),
             lanes: std::array::from_fn(|i| self.lanes[i] + other.lanes[i]),
+            loads: self.loads.with(&other.loads),
         }
     }
 
-    /// Name and value of each count: `warps`, and of each event that occurs `issued_EVENT` and `lanes_EVENT`.
+    /// Name and value of each count: `warps`, of each event that occurs `issued_EVENT` and `lanes_EVENT`, and where
+    /// anything is read `loads` and for each size of segments `segments_BYTES`.
     pub fn values(&self) -> Vec<(String, u64)> {
         let of_event = |(i, event): (usize, &&str)| {
             [(format!("issued_{event}"), self.issued[i]), (format!("lanes_{event}"), self.lanes[i])]
         };
         let occurs = |(i, _): &(usize, &&str)| self.issued[*i] > 0;
         let events = EVENTS.iter().enumerate().filter(occurs).flat_map(of_event);
-        std::iter::once(("warps".to_owned(), self.warps)).chain(events).collect()
+        let segments = SEGMENTS.iter().zip(self.loads.segments);
+        let segments = segments.map(|(bytes, number)| (format!("segments_{bytes}"), number));
+        let loads = std::iter::once(("loads".to_owned(), self.loads.issued)).chain(segments);
+        let loads = loads.filter(|_| self.loads.issued > 0);
+        std::iter::once(("warps".to_owned(), self.warps)).chain(events).chain(loads).collect()
     }
 
     /// Reads what [`Sums::values`] wrote; `None` where there is no number of warps.
     pub fn read(get: impl Fn(&str) -> Option<u64>) -> Option<Sums> {
         let of = |what: &str| EVENTS.map(|event| get(&format!("{what}_{event}")).unwrap_or(0));
-        get("warps").map(|warps| Sums { warps, issued: of("issued"), lanes: of("lanes") })
+        let segments = SEGMENTS.map(|bytes| get(&format!("segments_{bytes}")).unwrap_or(0));
+        let loads = Loads { issued: get("loads").unwrap_or(0), segments };
+        get("warps").map(|warps| Sums { warps, issued: of("issued"), lanes: of("lanes"), loads })
     }
 
     /// True for a name that [`Sums::values`] gives.
     pub fn has(name: &str) -> bool {
-        name == "warps" || name.starts_with("issued_") || name.starts_with("lanes_")
+        let prefixes = ["issued_", "lanes_", "segments_"];
+        ["warps", "loads"].contains(&name) || prefixes.iter().any(|prefix| name.starts_with(prefix))
     }
 
     /// The share of lanes that take part in what warps of `width` lanes issue, 0 to 1; `None` where nothing is issued.

@@ -1,11 +1,13 @@
 //! A traversal whose counting pass is replayed in warps.
 
 use super::lockstep::{Group, Lockstep, replay};
+use super::reads::TestReads;
 use super::stream::Stream;
 use super::sums::Sums;
 use crate::math::Ray;
 use crate::workloads::trace::count::{ByRayType, Counters};
 use crate::workloads::trace::traverse::{GROUP, Lanes, Search, Traverser, bits};
+use std::cell::Cell;
 use std::sync::{Mutex, PoisonError};
 
 /// See the module.
@@ -13,7 +15,13 @@ pub struct InWarps<'a> {
     traversal: &'a dyn Traverser,
     lockstep: Lockstep,
     group: Group,
+    tests: TestReads<'a>,
     found: Mutex<Found>,
+}
+
+thread_local! {
+    /// The streams of a thread's last work-group, whose memory the next one uses.
+    static SPARE: Cell<Option<Box<Lanes<Stream>>>> = const { Cell::new(None) };
 }
 
 #[derive(Default)]
@@ -25,8 +33,8 @@ struct Found {
 
 impl<'a> InWarps<'a> {
     /// A traversal that counts in warps whatever it is asked to count.
-    pub fn new(traversal: &'a dyn Traverser, lockstep: Lockstep, group: Group) -> InWarps<'a> {
-        InWarps { traversal, lockstep, group, found: Mutex::default() }
+    pub fn new(traversal: &'a dyn Traverser, lockstep: Lockstep, group: Group, tests: TestReads<'a>) -> InWarps<'a> {
+        InWarps { traversal, lockstep, group, tests, found: Mutex::default() }
     }
 
     /// What its warps have issued, by ray type.
@@ -51,13 +59,15 @@ impl Traverser for InWarps<'_> {
         alive: u64,
         counters: &mut Lanes<Counters>,
     ) -> Lanes<u32> {
-        let mut streams: Lanes<Stream> = std::array::from_fn(|lane| Stream::from(counters[lane]));
+        let mut streams = SPARE.take().unwrap_or_else(|| Box::new(std::array::from_fn(|_| Stream::default())));
+        streams.iter_mut().zip(&*counters).for_each(|(stream, counters)| stream.begin(*counters));
         let hits = self.traversal.recorded(search, rays, alive, &mut streams);
         for lane in bits(alive) {
             counters[lane] = streams[lane].counters;
         }
         let mut sums = Sums::default();
-        let replayed = replay(&self.lockstep, self.group, alive, &streams, &mut sums);
+        let replayed = replay(&self.lockstep, self.group, alive, (&streams, self.tests), &mut sums);
+        SPARE.set(Some(streams));
         let mut found = self.found.lock().unwrap_or_else(PoisonError::into_inner);
         found.sums[kind] = found.sums[kind].with(&sums);
         if let Err(problem) = replayed {

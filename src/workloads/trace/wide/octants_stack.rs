@@ -14,9 +14,10 @@ use crate::workloads::trace::simt::{
     Event::{Child, Leaf, Pop, Step, Test},
     Lockstep,
     Part::One,
-    choice, maybe, repeat,
+    Read, choice, maybe, repeat,
 };
 use crate::workloads::trace::traverse::{Best, STACK_SIZE, TraverseIndependent, Triangles};
+use crate::workloads::trace::wide::layout::Slot;
 use glam::Vec3A;
 
 /// In trees of four children a node.
@@ -26,7 +27,7 @@ pub static OCTANTS4: Traversal = Traversal {
     parameters: |s| Parameters::of(&[("WIDTH", Parameter::Word(4)), widened::parameter(s)]),
     twin: Some(TWIN),
     leaf_order: true,
-    lockstep: Some(|_| LOCKSTEP),
+    lockstep: Some(|_| LOCKSTEP4),
     ..Traversal::INDEPENDENT
 };
 
@@ -36,10 +37,15 @@ const LOCKSTEP: Lockstep = Lockstep::apart(&[repeat(&[
     maybe(&[One(Pop)]),
 ])]);
 
+const LOCKSTEP4: Lockstep = LOCKSTEP.reading(&[Read::one::<[Slot; 4]>(Step)]);
+
+const LOCKSTEP8: Lockstep = LOCKSTEP.reading(&[Read::one::<[Slot; 8]>(Step)]);
+
 /// In trees of eight.
 pub static OCTANTS8: Traversal = Traversal {
     structure: &EIGHT,
     parameters: |s| Parameters::of(&[("WIDTH", Parameter::Word(8)), widened::parameter(s)]),
+    lockstep: Some(|_| LOCKSTEP8),
     ..OCTANTS4
 };
 
@@ -71,6 +77,7 @@ impl Octants<'_> {
     #[inline(always)]
     fn visit<C: Count>(&self, ray: &Ray, node: u32, t: f32, flips: u32, count: &mut C) -> u32 {
         count.inner();
+        count.read(node);
         let mut hits = 0;
         for (i, child) in (0..).zip(self.tree.node(node)).filter(|(_, child)| !child.is_empty()) {
             count.box_test();

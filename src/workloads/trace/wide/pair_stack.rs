@@ -6,6 +6,7 @@ use crate::workloads::trace::algorithm::{Algorithm, Traversal};
 use crate::workloads::trace::bvh::loops::WHILE_WHILE;
 use crate::workloads::trace::bvh::stack::{CULL, InPairs, Pairs, StackSearch, parameters};
 use crate::workloads::trace::options::GROUP;
+use crate::workloads::trace::simt::{Event::Step, Lockstep, Read};
 use glam::Vec3A;
 
 /// `bvh-stack` with nodes of half the bytes.
@@ -29,9 +30,12 @@ pub static PAIR_STACK: Traversal = Traversal {
         Ok(input.with(StackSearch::new(&input, InPairs(tree))))
     }),
     leaf_order: true,
-    lockstep: Some(|_| WHILE_WHILE),
+    lockstep: Some(|_| LOCKSTEP),
     ..Traversal::INDEPENDENT
 };
+
+/// How its lanes wait for each other.
+const LOCKSTEP: Lockstep = WHILE_WHILE.reading(&[Read::one::<[Slot; 2]>(Step)]);
 
 impl Pairs for Wide {
     type Node = Slot;

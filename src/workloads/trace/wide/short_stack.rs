@@ -20,10 +20,11 @@ use crate::workloads::trace::simt::{
     Event::{Child, Leaf, Pop, Restart, Step, Test},
     Lockstep,
     Part::One,
-    choice, maybe, repeat,
+    Read, choice, maybe, repeat,
 };
 use crate::workloads::trace::traverse::{Best, STACK_SIZE, TraverseIndependent, Triangles};
 use crate::workloads::trace::wide::collapse::MAX_WIDTH;
+use crate::workloads::trace::wide::layout::Slot;
 use glam::Vec3A;
 
 /// Most entries of the stack.
@@ -36,7 +37,7 @@ pub static SHORT4: Traversal = Traversal {
     parameters: |s| parameters(s, 4),
     twin: Some(TWIN),
     leaf_order: true,
-    lockstep: Some(|_| LOCKSTEP),
+    lockstep: Some(|_| LOCKSTEP4),
     ..Traversal::INDEPENDENT
 };
 
@@ -46,8 +47,13 @@ const LOCKSTEP: Lockstep = Lockstep::apart(&[repeat(&[
     repeat(&[choice(&[maybe(&[One(Pop)]), maybe(&[One(Restart)])])]),
 ])]);
 
+const LOCKSTEP4: Lockstep = LOCKSTEP.reading(&[Read::one::<[Slot; 4]>(Step)]);
+
+const LOCKSTEP8: Lockstep = LOCKSTEP.reading(&[Read::one::<[Slot; 8]>(Step)]);
+
 /// In trees of eight.
-pub static SHORT8: Traversal = Traversal { structure: &EIGHT, parameters: |s| parameters(s, 8), ..SHORT4 };
+pub static SHORT8: Traversal =
+    Traversal { structure: &EIGHT, parameters: |s| parameters(s, 8), lockstep: Some(|_| LOCKSTEP8), ..SHORT4 };
 
 fn parameters(s: &Selection, width: u32) -> Parameters {
     let entries = Parameter::Word(s.size("entries") as u32);
@@ -102,6 +108,7 @@ impl ShortStack<'_> {
     #[inline(always)]
     fn visit<C: Count>(&self, ray: &Ray, node: u32, t: f32, met: &mut [Entry; MAX_WIDTH], count: &mut C) -> usize {
         count.inner();
+        count.read(node);
         let mut number = 0;
         for child in self.tree.node(node).iter().take_while(|child| !child.is_empty()) {
             count.box_test();

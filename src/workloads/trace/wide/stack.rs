@@ -15,6 +15,8 @@ use crate::workloads::trace::count::Count;
 use crate::workloads::trace::cpu::Twin;
 use crate::workloads::trace::options::{Axis, GROUP, Kind, OptionInfo};
 use crate::workloads::trace::selection::Selection;
+use crate::workloads::trace::simt::{Event::Step, Lockstep, Read};
+use crate::workloads::trace::wide::layout::Slot;
 use glam::Vec3A;
 
 const PAPER: &str = "Wald, Benthin and Boulos 2008; Ylitie, Karras and Laine 2017";
@@ -86,13 +88,22 @@ pub static STACK4: Traversal = Traversal {
     parameters: |s| parameters(s).and("WIDTH", Parameter::Word(4)),
     twin: Some(TWIN),
     leaf_order: true,
-    lockstep: Some(|_| WHILE_WHILE),
+    lockstep: Some(|_| LOCKSTEP4),
     ..Traversal::INDEPENDENT
 };
 
 /// The same in trees of eight.
-pub static STACK8: Traversal =
-    Traversal { structure: &EIGHT, parameters: |s| parameters(s).and("WIDTH", Parameter::Word(8)), ..STACK4 };
+pub static STACK8: Traversal = Traversal {
+    structure: &EIGHT,
+    parameters: |s| parameters(s).and("WIDTH", Parameter::Word(8)),
+    lockstep: Some(|_| LOCKSTEP8),
+    ..STACK4
+};
+
+/// How their lanes wait for each other.
+const LOCKSTEP4: Lockstep = WHILE_WHILE.reading(&[Read::one::<[Slot; 4]>(Step)]);
+
+const LOCKSTEP8: Lockstep = WHILE_WHILE.reading(&[Read::one::<[Slot; 8]>(Step)]);
 
 const TWIN: Twin = |input| {
     let tree: &Wide = input.structure()?;
@@ -127,6 +138,7 @@ impl Down for Sorted<'_> {
         let mut reference = from;
         while reference & LEAF == 0 {
             count.inner();
+            count.read(reference);
             let base = stack.depth;
             let (mut next, mut next_t) = (EMPTY, 0.0);
             for child in tree.node(reference).iter().take_while(|child| !child.is_empty()) {

@@ -41,7 +41,7 @@ fn a_table_without_a_measurement_is_empty_above_the_published_numbers() {
     }
     let without: Vec<&str> = IDS.into_iter().filter(|id| !["5.1", "5.2"].contains(id)).collect();
     let without_numbers = |data: &Data, ids: &[&'static str]| {
-        let numbers = Numbers { data: data.clone(), published: published::data() };
+        let numbers = Numbers { data: data.clone(), published: published::data(), modelled: Vec::new() };
         without_numbers(&numbers, ids, &compared())
     };
     assert_eq!(without_numbers(&bare, &IDS), without);

@@ -7,7 +7,7 @@ use rtbench::report::{Cell, Form, Line, Table};
 use rtbench::sources::convention::Convention;
 use rtbench::sources::thesis::data::Data;
 use rtbench::sources::thesis::tables::{IDS, build};
-use rtbench::sources::thesis::{measured, published};
+use rtbench::sources::thesis::{Numbers, measured, published};
 use rtbench::sources::{ALL, Options, Rows, select_tables};
 use rtbench::workloads::trace::backend::{Config, DeviceType};
 use rtbench::workloads::trace::record::by_ray_type;
@@ -15,7 +15,7 @@ use rtbench::workloads::trace::record::by_ray_type;
 const FORMATS: [Format; 4] = [Format::Text, Format::Markdown, Format::Csv, Format::Latex];
 
 pub fn tables(data: &Data, options: &Options, ids: &[&str]) -> Vec<Table> {
-    build(data, &published::data(), options, ids)
+    build(&Numbers { data: data.clone(), published: published::data(), modelled: Vec::new() }, options, ids)
 }
 
 /// Tables of one size at the thesis's usual one.

@@ -7,6 +7,7 @@ use super::KIND;
 use super::layout::{INDEX, LinkedBvh};
 use crate::math::{MISS, Ray, ray_box};
 use crate::workloads::trace::algorithm::{Parameters, Traversal};
+use crate::workloads::trace::bvh::BvhNode;
 use crate::workloads::trace::bvh::stack::{EMPTY, LEAF, leaf_triangle_refs, overlaps};
 use crate::workloads::trace::bvh::widened::{self, Widening};
 use crate::workloads::trace::count::Count;
@@ -14,7 +15,7 @@ use crate::workloads::trace::simt::{
     Event::{Child, Leaf, Rope, Step, Test, Turn},
     Lockstep, Mark,
     Part::One,
-    maybe, repeat,
+    Read, maybe, repeat,
 };
 use crate::workloads::trace::traverse::{Best, TraverseIndependent, Triangles};
 
@@ -36,7 +37,8 @@ pub static PARENT: Traversal = Traversal {
 const LOCKSTEP: Lockstep = Lockstep::apart(&[repeat(&[
     repeat(&[One(Turn), maybe(&[One(Child)]), repeat(&[One(Rope)]), maybe(&[One(Step)])]),
     maybe(&[One(Leaf), repeat(&[One(Test)]), repeat(&[One(Rope)])]),
-])]);
+])])
+.reading(&[Read::one::<BvhNode>(Turn), Read { bytes: 4, ..Read::one::<BvhNode>(Rope) }]);
 
 struct ByParent<'a> {
     triangles: Triangles<'a>,
@@ -62,6 +64,7 @@ impl ByParent<'_> {
                 return index ^ 1;
             }
             count.rope();
+            count.read(index);
             index = link & INDEX;
         }
         MISS
@@ -72,6 +75,7 @@ impl ByParent<'_> {
     fn next_leaf<C: Count>(&self, ray: &Ray, t: f32, mut index: u32, count: &mut C) -> (u32, u32) {
         while index != MISS {
             count.mark(Mark::Turn);
+            count.read(index);
             let node = &self.tree.bvh.nodes[index as usize];
             if index != 0 {
                 count.box_test();

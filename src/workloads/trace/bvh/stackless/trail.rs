@@ -4,6 +4,7 @@ use super::KIND;
 use super::layout::{INDEX, LinkedBvh};
 use crate::math::{MISS, Ray, ray_box};
 use crate::workloads::trace::algorithm::{Parameters, Traversal};
+use crate::workloads::trace::bvh::BvhNode;
 use crate::workloads::trace::bvh::stack::{LEAF, leaf_triangle_refs, overlaps};
 use crate::workloads::trace::bvh::widened::{self, Widening};
 use crate::workloads::trace::count::Count;
@@ -11,7 +12,7 @@ use crate::workloads::trace::simt::{
     Event::{Leaf, Restart, Step, Test},
     Lockstep,
     Part::One,
-    maybe, repeat,
+    Read, maybe, repeat,
 };
 use crate::workloads::trace::traverse::{Best, STACK_SIZE, TraverseIndependent, Triangles};
 
@@ -33,7 +34,8 @@ pub static TRAIL: Traversal = Traversal {
 const LOCKSTEP: Lockstep = Lockstep::apart(&[repeat(&[
     repeat(&[One(Step), maybe(&[One(Restart)])]),
     maybe(&[One(Leaf), repeat(&[One(Test)]), maybe(&[One(Restart)])]),
-])]);
+])])
+.reading(&[Read::pair::<BvhNode>(Step)]);
 
 struct ByTrail<'a> {
     triangles: Triangles<'a>,
@@ -76,6 +78,7 @@ impl ByTrail<'_> {
         let pairs = self.tree.bvh.nodes.as_chunks::<2>().0;
         while descent.node & LEAF == 0 {
             count.inner();
+            count.read(descent.node & INDEX);
             count.box_tests(2);
             let [left, right] = &pairs[(descent.node & INDEX) as usize / 2];
             let (min, max) = left.corners();

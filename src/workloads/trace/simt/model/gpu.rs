@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::guard;
 use crate::names as texts;
-use crate::workloads::trace::algorithms;
+use crate::workloads::trace::Selection;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -36,8 +36,38 @@ pub struct Gpu {
     pub shared_bytes: u64,
     /// By which published times its orders were validated; empty for none.
     pub validated: String,
-    /// Resident warps by structure, and `default`; empty where they follow from work-group memory.
-    pub resident_warps: BTreeMap<String, u32>,
+    /// Where resident warps do not follow from work-group memory alone.
+    pub resident: Vec<Resident>,
+}
+
+/// Resident warps of some kernels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Resident {
+    /// The structure; none for all.
+    structure: Option<&'static str>,
+    /// Options that a kernel must have for it.
+    options: Vec<(String, String)>,
+    /// Warps of a multiprocessor.
+    warps: u32,
+}
+
+impl Resident {
+    /// Reads a key: `default`, a structure, or a structure with options, `kdtree:search=restart`.
+    fn parse(key: &str, warps: u32) -> Result<Resident> {
+        if key == "default" {
+            return Ok(Resident { structure: None, options: Vec::new(), warps });
+        }
+        let structure = Some(Selection::parse(key)?.name());
+        let options = key.split_once(':').map_or("", |(_, options)| options).split(',');
+        let options = options.filter_map(|option| option.split_once('='));
+        let options = options.map(|(key, value)| (key.trim().to_owned(), value.trim().to_owned())).collect();
+        Ok(Resident { structure, options, warps })
+    }
+
+    fn is_of(&self, selection: &Selection) -> bool {
+        let has = |(key, value): &(String, String)| selection.value(key) == value;
+        self.structure.is_none_or(|structure| structure == selection.name() && self.options.iter().all(has))
+    }
 }
 
 #[derive(Deserialize)]
@@ -62,6 +92,16 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 }
 
 impl Gpu {
+    /// The GPUs of the program whose orders published times have confirmed.
+    ///
+    /// # Errors
+    /// None in practice: a test reads the files.
+    pub fn validated() -> Result<Vec<Gpu>> {
+        let mut gpus = KNOWN.iter().map(|(name, text)| Gpu::parse(name, text)).collect::<Result<Vec<Gpu>>>()?;
+        gpus.retain(|gpu| !gpu.validated.is_empty());
+        Ok(gpus)
+    }
+
     /// A GPU of the program by its name, or one of a file.
     ///
     /// # Errors
@@ -97,14 +137,10 @@ impl Gpu {
             number => Err(wrong(Some(value.span()), format!("{key} = {number}, which must be above 0"))),
         };
         let max_warps = positive("max_warps", &file.max_warps)?;
-        let resident = |(name, warps): (&String, &Spanned<u32>)| {
-            if name != "default" && algorithms().iter().all(|algorithm| algorithm.name != name) {
-                return Err(wrong(Some(warps.span()), format!("there is no structure {name}")));
-            }
-            match positive(name, warps)? {
-                warps if warps <= max_warps => Ok((name.clone(), warps)),
-                more => Err(wrong(Some(warps.span()), format!("{name} = {more}, which is above max_warps"))),
-            }
+        let resident = |(key, warps): (&String, &Spanned<u32>)| match positive(key, warps)? {
+            number if number <= max_warps => Resident::parse(key, number)
+                .map_err(|error| wrong(Some(warps.span()), format!("{key} names no kernels: {error}"))),
+            more => Err(wrong(Some(warps.span()), format!("{key} = {more}, which is above max_warps"))),
         };
         Ok(Gpu {
             multiprocessors: positive("multiprocessors", &file.multiprocessors)?,
@@ -116,20 +152,20 @@ impl Gpu {
                 0 => return Err(wrong(Some(file.shared_bytes.span()), "shared_bytes = 0".into())),
                 bytes => bytes,
             },
-            resident_warps: file.resident_warps.iter().map(resident).collect::<Result<_>>()?,
+            resident: file.resident_warps.iter().map(resident).collect::<Result<_>>()?,
             name: file.name,
             validated: file.validated,
         })
     }
 
-    /// Resident warps of a multiprocessor: those of the file for a structure, or as many as the work-group memory of
-    /// the kernel leaves room for, in whole work-groups of `group` invocations; at least one. Registers are not
-    /// modelled.
-    pub fn resident_warps(&self, structure: &str, group: u32, workgroup_bytes: u64) -> u32 {
-        if let Some(&warps) = self.resident_warps.get(structure).or_else(|| self.resident_warps.get("default")) {
-            return warps;
+    /// Resident warps of a multiprocessor: by the file's entry with the most options, or as many as the work-group
+    /// memory of the kernel leaves room for, in whole work-groups; at least one. Registers are not modelled.
+    pub fn resident_warps(&self, selection: &Selection, workgroup_bytes: u64) -> u32 {
+        let entries = self.resident.iter().filter(|entry| entry.is_of(selection));
+        if let Some(entry) = entries.max_by_key(|entry| (entry.structure.is_some(), entry.options.len())) {
+            return entry.warps;
         }
-        let of_group = group.div_ceil(self.warp_width).max(1);
+        let of_group = selection.method().group.size().div_ceil(self.warp_width).max(1);
         let groups = u64::from(self.max_warps / of_group);
         let fitting = self.shared_bytes.checked_div(workgroup_bytes).unwrap_or(groups);
         (groups.min(fitting) as u32 * of_group).max(1)
@@ -154,7 +190,7 @@ mod tests {
         for (name, text) in KNOWN {
             let gpu = Gpu::parse(name, text).unwrap();
             assert!(gpu.warp_width == 32 && !gpu.name.is_empty(), "{name}");
-            assert_eq!(gpu.validated.is_empty(), gpu.resident_warps.is_empty(), "{name}");
+            assert_eq!(gpu.validated.is_empty(), gpu.resident.is_empty(), "{name}");
         }
         assert_eq!(Gpu::load("GTX280").unwrap().name, "GeForce GTX 280");
     }
@@ -172,7 +208,12 @@ mod tests {
             (
                 "shared_bytes = 16384\n",
                 "shared_bytes = 1\n[resident_warps]\nkd-tree = 8\n",
-                "x.toml:9: there is no structure",
+                "x.toml:9: kd-tree names no kernels",
+            ),
+            (
+                "shared_bytes = 16384\n",
+                "shared_bytes = 1\n[resident_warps]\n\"kdtree:depth=2\" = 8\n",
+                "kdtree has no option 'depth'",
             ),
             (
                 "shared_bytes = 16384\n",
@@ -188,9 +229,21 @@ mod tests {
     }
 
     #[test]
+    fn the_entry_with_the_most_options_counts() {
+        let entries =
+            "[resident_warps]\ndefault = 16\nkdtree = 4\n\"kdtree:search=short-stack,memory=workgroup\" = 8\n";
+        let gpu = Gpu::parse("x", &[GOOD, entries].concat()).unwrap();
+        let warps = |text| gpu.resident_warps(&Selection::parse(text).unwrap(), 20_000);
+        let selections =
+            ["bvh", "kdtree", "kdtree:kt=2", "kdtree:search=restart", "kdtree:memory=private", "kdtree:search=ropes"];
+        assert_eq!(selections.map(warps), [16, 8, 8, 4, 4, 4]);
+    }
+
+    #[test]
     fn work_group_memory_limits_resident_warps() {
         let gpu = Gpu::parse("x", GOOD).unwrap();
-        let warps = |bytes| gpu.resident_warps("bvh", 64, bytes);
+        let bvh = Selection::parse("bvh").unwrap();
+        let warps = |bytes| gpu.resident_warps(&bvh, bytes);
         assert_eq!([warps(0), warps(100), warps(4096), warps(16_384), warps(20_000)], [24, 24, 8, 2, 1]);
         // 10^9 cycles a second in two multiprocessors, a quarter of an instruction each
         assert!((gpu.issue_ms(5e8) - 1000.0).abs() < 1e-9);

@@ -11,5 +11,5 @@ mod weights;
 
 pub use gpu::{Gpu, names};
 pub use order::{CLOSE, Modelled, Ranked, rank};
-pub use run::{sums_of, tables};
-pub use weights::{EVENT_FACTOR, Weights};
+pub use run::tables;
+pub use weights::{EVENT_FACTOR, KernelFacts, Weights};

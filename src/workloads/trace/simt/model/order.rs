@@ -3,7 +3,11 @@
 use super::super::stream::{EVENTS, Event};
 use super::super::sums::Sums;
 use super::gpu::Gpu;
-use super::weights::{EVENT_FACTOR, Weights};
+use super::weights::{EVENT_FACTOR, KernelFacts, Weights};
+use crate::error::Result;
+use crate::workloads::trace::Selection;
+use crate::workloads::trace::rays::Config;
+use crate::workloads::trace::record::ConfigurationRecord;
 
 /// Structures whose work per resident warp differs by less are too close to be told apart.
 pub const CLOSE: f64 = 1.15;
@@ -42,14 +46,59 @@ pub struct Ranked {
 }
 
 impl Modelled {
-    fn work(&self, weights: &Weights) -> f64 {
+    /// Counted frames on a GPU, by the weights of their kernel.
+    ///
+    /// # Errors
+    /// Those of [`KernelFacts::of`].
+    pub fn new(
+        gpu: &Gpu,
+        selection: &Selection,
+        config: Config,
+        (sums, frames): (Vec<Sums>, usize),
+    ) -> Result<Modelled> {
+        let KernelFacts { weights, workgroup_bytes } = KernelFacts::of(selection, config)?;
+        let warps = gpu.resident_warps(selection, workgroup_bytes);
+        Ok(Modelled { name: selection.full_name(), sums, weights, warps, frames: frames.max(1) })
+    }
+
+    /// What a recorded row counted, on a GPU; `None` where no warps of its width were counted.
+    ///
+    /// # Errors
+    /// [`crate::Error::Input`] for a structure that this program does not have.
+    pub fn of(record: &ConfigurationRecord, gpu: &Gpu) -> Result<Option<Modelled>> {
+        let Some(sums) = record.issued.filter(|_| record.warp_width == Some(gpu.warp_width)) else { return Ok(None) };
+        let selection = selection_of(record)?;
+        Modelled::new(gpu, &selection, record.config, (sums.to_vec(), record.frames)).map(Some)
+    }
+
+    /// Instructions that warps issue for a frame, on average.
+    pub fn instructions(&self) -> f64 {
+        self.weights.instructions(&self.sums) / self.frames as f64
+    }
+
+    /// Instructions of a frame over resident warps, on average.
+    pub fn work(&self) -> f64 {
+        self.instructions() / f64::from(self.warps)
+    }
+
+    /// The same of all frames, by other weights.
+    fn work_by(&self, weights: &Weights) -> f64 {
         weights.instructions(&self.sums) / f64::from(self.warps)
     }
 }
 
+/// The selection of a row.
+///
+/// # Errors
+/// [`crate::Error::Input`] for a structure that this program does not have.
+pub fn selection_of(record: &ConfigurationRecord) -> Result<Selection> {
+    let ConfigurationRecord { structure, variant, .. } = record;
+    Selection::parse(&if variant == "default" { structure.clone() } else { format!("{structure}:{variant}") })
+}
+
 /// Structures in the order of their work per resident warp, least first.
 pub fn rank(gpu: &Gpu, rows: &[Modelled]) -> Vec<Ranked> {
-    let works: Vec<f64> = rows.iter().map(|row| row.work(&row.weights)).collect();
+    let works: Vec<f64> = rows.iter().map(|row| row.work_by(&row.weights)).collect();
     let mut order: Vec<usize> = (0..rows.len()).collect();
     order.sort_by(|&a, &b| works[a].total_cmp(&works[b]));
     let Some(&first) = order.first() else { return Vec::new() };
@@ -64,7 +113,7 @@ pub fn rank(gpu: &Gpu, rows: &[Modelled]) -> Vec<Ranked> {
             .map(|row| {
                 let mut factors = common;
                 factors[1 + Event::Step as usize] = random();
-                row.work(&row.weights.scaled(&factors))
+                row.work_by(&row.weights.scaled(&factors))
             })
             .collect();
         drawn.iter_mut().zip(&works).for_each(|(drawn, work)| drawn.push(work / works[first]));
@@ -79,8 +128,7 @@ pub fn rank(gpu: &Gpu, rows: &[Modelled]) -> Vec<Ranked> {
         }
         Ranked {
             index,
-            bound_ms: gpu.issue_ms(rows[index].weights.instructions(&rows[index].sums))
-                / rows[index].frames.max(1) as f64,
+            bound_ms: gpu.issue_ms(rows[index].instructions()),
             relative: works[index] / works[first],
             band: (drawn[index][DRAWS / 20], drawn[index][DRAWS - 1 - DRAWS / 20]),
             close,

@@ -2,18 +2,11 @@
 
 use super::super::sums::Sums;
 use super::gpu::Gpu;
-use super::order::{Modelled, rank};
-use super::weights::Weights;
-use crate::device::Source;
+use super::order::{Modelled, rank, selection_of};
 use crate::error::{Error, Result};
-use crate::record::journal::Journal;
-use crate::record::row::{Row, Status, Value};
+use crate::record::row::Status;
 use crate::report::{Cell, Column, Form, Origin, Row as TableRow, Table};
-use crate::workloads::trace::backend::RAY_TYPES;
-use crate::workloads::trace::gpu::kernels::{self, Entry, Kernel, StagedPass};
-use crate::workloads::trace::rays::Config;
-use crate::workloads::trace::record::{WORKLOAD, variant_of};
-use crate::workloads::trace::{Method, Selection};
+use crate::workloads::trace::record::{ConfigurationRecord, TraceJournal};
 
 const ORIGIN: Origin = Origin { source: "simt", kind: "table", published: "" };
 
@@ -25,92 +18,37 @@ struct Group {
     without: Vec<(String, String)>,
 }
 
-/// What a row's warps issued, by ray type; `None` where they were not counted.
-pub fn sums_of(row: &Row) -> Option<Vec<Sums>> {
-    let of = |ray: &str| Sums::read(|name| row.metric(Some(ray), name).and_then(Value::integer));
-    let sums: Vec<Sums> = RAY_TYPES.iter().filter_map(|ray| of(ray)).collect();
-    (!sums.is_empty()).then_some(sums)
-}
-
-/// The selection of a row.
-fn selection_of(row: &Row) -> Result<Selection> {
-    let (structure, variant) = (row.key.axis("structure"), variant_of(&row.key));
-    Selection::parse(&if variant == "default" { structure.to_owned() } else { format!("{structure}:{variant}") })
-}
-
-/// The timed kernel of frames as a GPU runs it, with a stack of 32; where a frame has several passes, that of primary
-/// rays.
-///
-/// # Errors
-/// [`crate::Error::Device`] with file and line for an include that does not exist (a mistake in `kernels/`).
-fn timed_kernel(method: Method, config: Config) -> Result<Source> {
-    let entry = if method.traversal.packets.is_some() {
-        kernels::packet_passes(config, false)[0]
-    } else if method.is_staged(config.bounces()) {
-        Entry::Staged { config, counting: false, pass: StagedPass::Primary }
-    } else {
-        Entry::Render { config, counting: false }
-    };
-    let kernel = Kernel { entry, method, stack_size: 32, software_threads: 0, textures: false, leaf_order: false };
-    kernel.assemble().map_err(Error::Device)
-}
-
-impl Modelled {
-    /// A row on a GPU, by the weights of its kernel.
-    ///
-    /// # Errors
-    /// [`Error::Input`] for a structure that this program does not have.
-    pub fn of(row: &Row, sums: Vec<Sums>, gpu: &Gpu) -> Result<Modelled> {
-        let selection = selection_of(row)?;
-        let method = selection.method();
-        let config = Config::named(row.key.axis("config"));
-        let config = config.ok_or_else(|| Error::argument("RUN", "a row has no ray configuration", ""))?;
-        let frames = row.key.axis("frames").parse().ok().filter(|&frames| frames > 0);
-        let frames = frames.ok_or_else(|| Error::argument("RUN", "a row has no number of frames", ""))?;
-        let kernel = timed_kernel(method, config)?;
-        let bytes = kernel.cost()?.workgroup_bytes;
-        Ok(Modelled {
-            warps: gpu.resident_warps(selection.name(), method.group.size(), bytes),
-            name: selection.full_name(),
-            weights: Weights::of_kernel(&kernel)?,
-            sums,
-            frames,
-        })
-    }
-}
-
-fn groups(journals: &[&Journal], gpu: &Gpu) -> Result<Vec<Group>> {
-    let mut groups: Vec<Group> = Vec::new();
+fn groups(journals: &[&TraceJournal], gpu: &Gpu) -> Result<Vec<Group>> {
+    let mut groups: Vec<(Vec<String>, Group)> = Vec::new();
     let mut other_width = None;
-    for row in journals.iter().flat_map(|journal| &journal.rows) {
-        let width = row.key.axis("warp_width");
-        if row.key.workload != WORKLOAD || width.is_empty() {
-            continue;
-        }
-        if width.parse() != Ok(gpu.warp_width) {
+    for record in journals.iter().flat_map(|journal| &journal.configurations) {
+        let Some(width) = record.warp_width else { continue };
+        if width != gpu.warp_width {
             other_width.get_or_insert(width);
             continue;
         }
-        let [scene, path, config, size] = ["scene", "camera_path", "config", "resolution"].map(|a| row.key.axis(a));
-        let title = format!("{scene}, {config}, {size}, {path}, {} frames", row.key.axis("frames"));
-        let index = groups.iter().position(|group| group.title == title).unwrap_or_else(|| {
-            groups.push(Group { title, rows: Vec::new(), without: Vec::new() });
+        let ConfigurationRecord { scene, camera_path, config, frames, .. } = record;
+        let size = format!("{}x{}", record.width, record.height);
+        let title = format!("{}, {config:?}, {size}, {}, {frames} frames", scene.name, camera_path.name);
+        // Files of the same name may have other contents
+        let key = vec![title.clone(), scene.hash.clone(), camera_path.hash.clone()];
+        let index = groups.iter().position(|(known, _)| *known == key).unwrap_or_else(|| {
+            groups.push((key, Group { title, rows: Vec::new(), without: Vec::new() }));
             groups.len() - 1
         });
-        let group = &mut groups[index];
-        match sums_of(row) {
-            Some(sums) => {
-                let modelled = Modelled::of(row, sums, gpu)?;
+        let group = &mut groups[index].1;
+        match Modelled::of(record, gpu)? {
+            Some(modelled) => {
                 // Of several rows of the same, the last one counts
                 group.rows.retain(|known| known.name != modelled.name);
                 group.without.retain(|(name, _)| *name != modelled.name);
                 group.rows.push(modelled);
             }
             None => {
-                let name = selection_of(row).map_or(row.key.axis("structure").to_owned(), |s| s.full_name());
-                let reason = match row.status {
-                    Status::Ok => row.warnings.iter().find(|warning| warning.starts_with("warps are not counted")),
-                    _ => Some(&row.message),
+                let name = selection_of(record).map_or(record.structure.clone(), |s| s.full_name());
+                let reason = match record.status {
+                    Status::Ok => record.warnings.iter().find(|warning| warning.starts_with("warps are not counted")),
+                    _ => Some(&record.message),
                 };
                 let is_known = group.rows.iter().any(|known| known.name == name)
                     || group.without.iter().any(|(known, _)| *known == name);
@@ -124,14 +62,14 @@ fn groups(journals: &[&Journal], gpu: &Gpu) -> Result<Vec<Group>> {
         let problem = format!("warps of the run have {width} lanes, those of {} have {}", gpu.name, gpu.warp_width);
         return Err(Error::argument("--gpu", problem, "measure with that --warp-width, or give another GPU"));
     }
-    Ok(groups)
+    Ok(groups.into_iter().map(|(_, group)| group).collect())
 }
 
 /// A table for each scene, path, ray configuration and size: the order of structures on a GPU.
 ///
 /// # Errors
 /// [`Error::Input`]: warps of another width, structures that this program does not have, or no counts at all.
-pub fn tables(journals: &[&Journal], gpu: &Gpu) -> Result<Vec<Table>> {
+pub fn tables(journals: &[&TraceJournal], gpu: &Gpu) -> Result<Vec<Table>> {
     let groups = groups(journals, gpu)?;
     if groups.is_empty() {
         let hint = "measure with --warp-width, as `rtbench sweep --preset simt` does";

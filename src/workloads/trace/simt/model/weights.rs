@@ -1,9 +1,14 @@
-//! Instructions of events.
+//! Instructions of events, and of which kernel they are.
 
 use super::super::stream::{EVENTS, Event};
 use super::super::sums::Sums;
 use crate::device::Source;
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::workloads::trace::gpu::kernels::{self, Entry, Kernel, StagedPass};
+use crate::workloads::trace::rays::Config;
+use crate::workloads::trace::{Method, Selection};
+use std::collections::HashMap;
+use std::sync::{LazyLock, Mutex, PoisonError};
 
 /// A weight may be wrong by this factor, up or down.
 pub const EVENT_FACTOR: f64 = 1.5;
@@ -59,4 +64,50 @@ impl Weights {
         };
         sums.iter().map(of_type).sum()
     }
+}
+
+/// What the model needs to know of a kernel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KernelFacts {
+    /// Of its events.
+    pub weights: Weights,
+    /// Work-group memory of a work-group.
+    pub workgroup_bytes: u64,
+}
+
+impl KernelFacts {
+    /// The timed kernel of frames of a selection; each is read once in the life of the program.
+    ///
+    /// # Errors
+    /// [`Error::Device`] for a kernel that is not valid (a mistake in `kernels/`).
+    pub fn of(selection: &Selection, config: Config) -> Result<KernelFacts> {
+        static KNOWN: LazyLock<Mutex<HashMap<(String, Config), KernelFacts>>> = LazyLock::new(Mutex::default);
+        let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+        let key = (selection.full_name(), config);
+        if let Some(facts) = known.get(&key) {
+            return Ok(*facts);
+        }
+        let kernel = timed_kernel(selection.method(), config)?;
+        let facts =
+            KernelFacts { weights: Weights::of_kernel(&kernel)?, workgroup_bytes: kernel.cost()?.workgroup_bytes };
+        known.insert(key, facts);
+        Ok(facts)
+    }
+}
+
+/// The timed kernel of frames as a GPU runs it, with a stack of 32; where a frame has several passes, that of primary
+/// rays.
+///
+/// # Errors
+/// [`Error::Device`] with file and line for an include that does not exist (a mistake in `kernels/`).
+fn timed_kernel(method: Method, config: Config) -> Result<Source> {
+    let entry = if method.traversal.packets.is_some() {
+        kernels::packet_passes(config, false)[0]
+    } else if method.is_staged(config.bounces()) {
+        Entry::Staged { config, counting: false, pass: StagedPass::Primary }
+    } else {
+        Entry::Render { config, counting: false }
+    };
+    let kernel = Kernel { entry, method, stack_size: 32, software_threads: 0, textures: false, leaf_order: false };
+    kernel.assemble().map_err(Error::Device)
 }
