@@ -19,9 +19,9 @@ use std::path::PathBuf;
 pub struct Arguments {
     #[command(flatten)]
     runs: RunArguments,
-    /// Tables by their numbers, or all; the thesis has 5.1 to 5.14, 5.3.4 (speed-ups between devices) and B.1 to B.6,
-    /// rt2 has 4.4 to 4.6, spheres has 1 to 4, best, metrics, switches, scaling, half and work, structures has
-    /// rates, work and break-even
+    /// Tables by their numbers, or all; the thesis has 5.1 to 5.14, 5.3.4 (speed-ups between devices), B.1 to B.6 and
+    /// simt (work by the SIMT model, where warps were counted), rt2 has 4.4 to 4.6, spheres has 1 to 4, best, metrics,
+    /// switches, scaling, half and work, structures has rates, work and break-even
     #[arg(long, default_value = "all", value_name = "LIST")]
     table: String,
     /// Format of the tables

@@ -1,7 +1,6 @@
 //! The study that the model comes from: the trees of its time, the test of Möller and Trumbore, weights by eye, and a
-//! part of the work-groups. `tests/data/simt-study.csv` has what was counted in that way; `RTBENCH_RENEW_STUDY=1` counts
-//! it anew (RTBENCH_SCENES names the folder of scenes; ten minutes on two cores).
-
+//! part of the work-groups. `tests/data/simt-study.csv` has what was counted in that way; `RTBENCH_RENEW_STUDY=1`
+//! counts it anew (RTBENCH_SCENES names the folder of scenes; four minutes on two cores).
 use super::published::{Groups, Pairs, pairs, published};
 use rtbench::camera::CameraPath;
 use rtbench::scene::{Scene, load_in};
@@ -34,7 +33,7 @@ fn structures(scene: &str) -> [&'static str; 3] {
 }
 
 /// Chosen by the study before any fit.
-fn by_eye(structure: &str) -> Weights {
+pub fn by_eye(structure: &str) -> Weights {
     use Event::*;
     let step = if structure == "bvh" { 85.0 } else { 25.0 };
     let others = [(Vote, 35.0), (Leaf, 10.0), (Test, 65.0), (Pop, 10.0), (Restart, 8.0)];
