@@ -1,6 +1,7 @@
 //! The study that the model comes from: the trees of its time, the test of Möller and Trumbore, weights by eye, and a
 //! part of the work-groups. `tests/data/simt-study.csv` has what was counted in that way; `RTBENCH_RENEW_STUDY=1`
 //! counts it anew (RTBENCH_SCENES names the folder of scenes; four minutes on two cores).
+
 use super::published::{Groups, Pairs, pairs, published};
 use rtbench::camera::CameraPath;
 use rtbench::scene::{Scene, load_in};
@@ -180,7 +181,7 @@ fn renew() {
 fn four_frames_of_bunny_and_museum_are_in_order() {
     let cpu = CpuBackend::new(2).unwrap();
     let (mut former, mut today) = (Vec::new(), Vec::new());
-    for (name, configs) in [("bunny", &SCENES[0].2[..]), ("museum", SCENES[2].2)] {
+    for (name, configs) in [("bunny", SCENES[0].2), ("museum", SCENES[2].2)] {
         let Some(scene) = scene(name) else { return };
         for (&config, (side, every)) in configs.iter().flat_map(|config| SIDES[..2].iter().map(move |s| (config, *s))) {
             let row = |structure: &str| Row {
