@@ -12,6 +12,7 @@ pub use html::write as html;
 pub use text::{Form, summary, write};
 
 use crate::compare::judge::{Outcome, Verdict};
+use crate::report::html::capital;
 use crate::sources::rows::Device;
 use serde::Serialize;
 
@@ -202,10 +203,18 @@ impl Grounds {
 }
 
 /// The finding of a claim by the SIMT model of a GPU, in place of frame times; `None` without a case.
-pub fn by_model(statement: Statement, gpu: &str, cases: Vec<Case>, printed: &[Case], remark: &str) -> Option<Finding> {
+/// `notes` are on frames that were left out.
+pub fn by_model(
+    statement: Statement,
+    gpu: &str,
+    cases: Vec<Case>,
+    printed: &[Case],
+    (remark, notes): (&str, &[String]),
+) -> Option<Finding> {
     let warnings = Some(remark.to_owned()).filter(|remark| !remark.is_empty()).into_iter().collect();
     (!cases.is_empty()).then(|| Finding {
         device: gpu.to_owned(),
+        left_out: notes.iter().map(|note| capital(note)).collect(),
         warnings,
         ..Finding::of(statement, Basis::SimtModel, cases, printed)
     })

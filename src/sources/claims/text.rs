@@ -128,11 +128,8 @@ pub(super) fn details(finding: &Finding) -> Vec<String> {
 
 /// One line per finding, as Markdown.
 pub fn summary(findings: &[Finding], by: &str) -> String {
-    parts(findings, by)
-        .into_iter()
-        .map(|(heading, of)| format!("{heading}\n\n{}", rows_of(&of)))
-        .collect::<Vec<_>>()
-        .join("\n")
+    let of_part = |(heading, of): (String, Vec<&Finding>)| format!("{heading}\n\n{}", rows_of(&of));
+    parts(findings, by).into_iter().map(of_part).collect::<Vec<_>>().join("\n")
 }
 
 fn rows_of(findings: &[&Finding]) -> String {
@@ -162,7 +159,12 @@ fn rows_of(findings: &[&Finding]) -> String {
 }
 
 fn markdown(findings: &[Finding], by: &str) -> String {
-    let mut text = summary(findings, by);
+    let of_part = |(heading, of): (String, Vec<&Finding>)| format!("{heading}\n\n{}{}", rows_of(&of), details_of(&of));
+    parts(findings, by).into_iter().map(of_part).collect::<Vec<_>>().join("\n")
+}
+
+fn details_of(findings: &[&Finding]) -> String {
+    let mut text = String::new();
     for finding in findings {
         text += &format!("\n**{}: {}** ({})\n\n", finding.claim, escape(finding.statement), finding.verdict.in_words());
         let cases = finding.cases.iter().map(|c| format!("`{}` {}: {}", sign(c.outcome), c.name(), c.numbers));

@@ -6,6 +6,7 @@ mod built;
 mod conditions;
 mod device;
 mod frame;
+mod modelled;
 mod paths;
 mod variant;
 
@@ -13,5 +14,6 @@ pub use built::{Built, BuiltBy, builders, choose_built, threads_in_words};
 pub use conditions::{choose_frames, unlike_devices};
 pub use device::{Device, Devices};
 pub use frame::{Failure, Frame};
+pub use modelled::{ModelledRows, modelled};
 pub use paths::is_own_path;
 pub use variant::Variant;

@@ -3,7 +3,7 @@
 use super::data::{Built, Data, Failure, Frame, Measurement};
 use super::models::SceneKey;
 use super::structures::is_own;
-use crate::sources::rows::{Device, Devices, Variant, choose_built, choose_frames, unlike_devices};
+use crate::sources::rows::{self, Devices, Variant, choose_built, choose_frames, unlike_devices};
 use crate::sources::runs::{RecordedRun, with_traces};
 use crate::workloads::trace::backend::Config;
 use crate::workloads::trace::record::{ConfigurationRecord, SceneRecord};
@@ -66,17 +66,9 @@ pub fn data(runs: &[RecordedRun]) -> Data {
 
 /// The work of the same frames on a GPU by the SIMT model; `None` where no warps of its width were counted.
 pub fn modelled(runs: &[RecordedRun], gpu: &Gpu) -> Option<Data> {
-    let records = with_traces(runs).into_iter().flat_map(|run| &run.journal.configurations);
-    let records = records.filter(|record| record.config == Config::P);
-    let frames: Vec<_> =
-        records.filter_map(|record| Some((Frame::modelled(row_key(record), record, gpu)?, ()))).collect();
-    if frames.is_empty() {
-        return None;
-    }
-    let devices = vec![Device { label: gpu.name.clone(), ..Device::default() }];
-    let (frames, notes) = choose_frames(frames, &devices);
-    let mut data = Data { devices, notes, ..Data::default() };
-    frames.into_iter().for_each(|(frame, ())| add(&mut data, Measurement { frame, primary: None }));
+    let modelled = rows::modelled(runs, gpu, |record| record.config == Config::P, row_key)?;
+    let mut data = Data { devices: vec![modelled.device], notes: modelled.notes, ..Data::default() };
+    modelled.frames.into_iter().for_each(|frame| add(&mut data, Measurement { frame, primary: None }));
     Some(data)
 }
 

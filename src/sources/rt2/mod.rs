@@ -56,9 +56,7 @@ impl Numbers {
     /// The numbers of these runs.
     pub fn of(runs: &[RecordedRun]) -> Numbers {
         let data = (!runs.is_empty()).then(|| measured::data(runs));
-        // Reading the files of the GPUs that are part of the program cannot fail
-        let gpus = Gpu::validated().unwrap_or_default();
-        let modelled = gpus.iter().filter_map(|gpu| measured::modelled(runs, gpu)).collect();
+        let modelled = Gpu::validated().iter().filter_map(|gpu| measured::modelled(runs, gpu)).collect();
         Numbers { data, published: published::data(), modelled }
     }
 }

@@ -6,7 +6,7 @@ use super::structures;
 use super::structures::Step;
 use super::variant::Variant;
 use crate::sources::convention::Steps;
-use crate::sources::rows::{Built, Device, Devices, choose_built, choose_frames, unlike_devices};
+use crate::sources::rows::{self, Built, Devices, choose_built, choose_frames, unlike_devices};
 use crate::sources::rt2;
 use crate::sources::runs::{RecordedRun, with_traces};
 use crate::workloads::trace::record::{ConfigurationRecord, CounterSums, SceneRecord};
@@ -23,11 +23,15 @@ pub fn has_rows(run: &RecordedRun) -> bool {
 /// Everything that runs have measured. Of several measurements of the same, the last complete one counts; of unlike
 /// conditions, one fills the rows ([`choose_frames`]).
 pub fn data(runs: &[RecordedRun]) -> Data {
+    read(&with_traces(runs))
+}
+
+fn read(runs: &[&RecordedRun]) -> Data {
     let mut data = Data::default();
     let mut devices = Devices::default();
     let mut scenes: HashMap<SceneKey, usize> = HashMap::new();
     let (mut built, mut frames) = (Vec::new(), Vec::new());
-    for run in with_traces(runs) {
+    for run in runs {
         let provenance = &run.journal.provenance;
         let devices = devices.add(provenance);
         for record in &run.journal.structures {
@@ -62,21 +66,21 @@ pub fn data(runs: &[RecordedRun]) -> Data {
     data
 }
 
-/// The work of the same frames on a GPU by the SIMT model; `None` where no warps of its width were counted. Scenes and
-/// structures are those of `measured`.
-pub fn modelled(runs: &[RecordedRun], measured: &Data, gpu: &Gpu) -> Option<Data> {
-    let records = with_traces(runs).into_iter().flat_map(|run| &run.journal.configurations);
-    let of_thesis = records.filter(|record| CONFIGS.contains(&record.config));
-    let frames: Vec<_> =
-        of_thesis.filter_map(|record| Some((Frame::modelled(row_key(record), record, gpu)?, ()))).collect();
-    if frames.is_empty() {
-        return None;
-    }
-    let devices = vec![Device { label: gpu.name.clone(), ..Device::default() }];
-    let (scenes, built) = (measured.scenes.clone(), measured.built.clone());
-    let (frames, notes) = choose_frames(frames, &devices);
-    let mut data = Data { modelled: true, devices, scenes, built, notes, ..Data::default() };
-    frames.into_iter().for_each(|(frame, ())| add_frame(&mut data, frame));
+/// The work of frames on a GPU by the SIMT model; `None` where no warps of its width were counted. Scenes and
+/// structures are those of the runs that counted them.
+pub fn modelled(runs: &[RecordedRun], gpu: &Gpu) -> Option<Data> {
+    let of_thesis = |record: &ConfigurationRecord| CONFIGS.contains(&record.config);
+    let modelled = rows::modelled(runs, gpu, of_thesis, row_key)?;
+    let Data { scenes, built, .. } = read(&modelled.runs);
+    let mut data = Data {
+        modelled: true,
+        devices: vec![modelled.device],
+        scenes,
+        built,
+        notes: modelled.notes,
+        ..Data::default()
+    };
+    modelled.frames.into_iter().for_each(|frame| add_frame(&mut data, frame));
     Some(data)
 }
 

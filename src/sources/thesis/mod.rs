@@ -58,9 +58,7 @@ impl Numbers {
     pub fn of(runs: &[RecordedRun]) -> Numbers {
         let published = published::data();
         let data = if runs.is_empty() { published.clone() } else { measured::data(runs) };
-        // Reading the files of the GPUs that are part of the program cannot fail
-        let gpus = Gpu::validated().unwrap_or_default();
-        let modelled = gpus.iter().filter_map(|gpu| measured::modelled(runs, &data, gpu)).collect();
+        let modelled = Gpu::validated().iter().filter_map(|gpu| measured::modelled(runs, gpu)).collect();
         Numbers { data, published, modelled }
     }
 }

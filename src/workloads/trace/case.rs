@@ -25,7 +25,7 @@ pub struct TraceCase {
 }
 
 /// Lanes that a warp can have.
-const WARP_WIDTHS: [u32; 4] = [8, 16, 32, 64];
+pub const WARP_WIDTHS: [u32; 4] = [8, 16, 32, 64];
 
 /// Reads a value of the axis `warp_width`.
 ///

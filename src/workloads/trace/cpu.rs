@@ -266,11 +266,15 @@ impl Prepared for CpuPrepared<'_> {
             let down = (size.pixels() as u32).div_ceil(BAND_PIXELS);
             tiles(size, 1, down, frame.group).into_iter().for_each(count);
         } else {
-            let across = size.width.div_ceil(STRIPE * frame.group.width);
-            let stripes = tiles(size, across, size.height.div_ceil(frame.group.height), frame.group);
-            let place = |tile: &Tile| tile.column / (STRIPE * frame.group.width) + tile.row / frame.group.height;
-            let counted = stripes.into_par_iter().filter(|tile| place(tile).is_multiple_of(warps.every));
-            self.device.pool().install(|| counted.for_each(count));
+            let (columns, rows) = (STRIPE * frame.group.width, frame.group.height);
+            let stripe = |(down, across): (u32, u32)| {
+                let (column, row) = (across * columns, down * rows);
+                Tile { column, columns: columns.min(size.width - column), row, rows: rows.min(size.height - row) }
+            };
+            let places = |down| (0..size.width.div_ceil(columns)).map(move |across| (down, across));
+            let all: Vec<_> = (0..size.height.div_ceil(rows)).flat_map(places).collect();
+            let counted = all.into_par_iter().filter(|(down, across)| (down + across).is_multiple_of(warps.every));
+            self.device.pool().install(|| counted.map(stripe).for_each(count));
         }
         in_warps.sums().map_err(Error::Device)
     }

@@ -4,7 +4,7 @@ use super::case::{TraceCase, parse_warp_width};
 use super::gpu::kernels;
 use super::input::TraceInput;
 use super::rays::{self, Config};
-use super::record::{RAY_TYPES, WORKLOAD, variant_of};
+use super::record::{RAY_TYPES, WORKLOAD, issued_of, variant_of};
 use super::simt::Sums;
 use super::tracer::Decorate;
 use super::{Selection, artifacts, build};
@@ -289,6 +289,8 @@ impl Workload for Trace {
             derived.push(Metric::new("mrays_per_s", round(rays as f64 / frames.total_ms / 1e3, 4)));
         }
         let config = Config::named(row.key.axis("config"));
+        let width = row.key.axis("warp_width").parse().ok();
+        let issued = width.and_then(|width| Some((width, issued_of(row, width)?)));
         for (index, ray) in RAY_TYPES.into_iter().enumerate() {
             let Some(rays) = sum(ray, "rays").filter(|&rays| rays > 0) else { continue };
             let per_ray = |sum: u64| round(sum as f64 / rays as f64, 4);
@@ -306,9 +308,7 @@ impl Workload for Trace {
                     derived.push(Metric::new(&name, per_ray(sum)));
                 }
             }
-            let width = row.key.axis("warp_width").parse().ok();
-            let warps = Sums::read(|name| sum(ray, name));
-            if let Some(share) = width.zip(warps).and_then(|(width, sums)| sums.utilisation(width)) {
+            if let Some(share) = issued.and_then(|(width, sums)| sums[index].utilisation(width)) {
                 derived.push(Metric::of(ray, "utilisation", round(share, 4)));
             }
         }

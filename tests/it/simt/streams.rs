@@ -3,7 +3,7 @@
 use rtbench::workloads::trace::count::Count;
 use rtbench::workloads::trace::simt::{
     Event::{self, *},
-    Group, Lockstep,
+    Group, Lockstep, NotWhole,
     Part::{All, One},
     Read, Stream, Sums, TestReads, choice, maybe, repeat, replay,
 };
@@ -159,9 +159,13 @@ fn sums_are_read_as_they_are_written() {
     let values = sums.values();
     assert_eq!(values[0], ("warps".to_owned(), 1));
     assert!(values.iter().all(|(name, _)| Sums::has(name)) && !Sums::has("rays"));
-    let read = Sums::read(|name| values.iter().find(|(known, _)| known == name).map(|(_, value)| *value));
+    let get = |name: &str| values.iter().find(|(known, _)| known == name).map_or(0, |(_, value)| *value);
+    let read = Sums::read(|name| Ok(get(name)));
     assert_eq!(read, Some(sums));
-    assert_eq!(Sums::read(|_| None), None);
+    assert_eq!(Sums::read(|_| Ok(0)), None);
+    // A damaged count, and more lanes than warps have
+    assert_eq!(Sums::read(|name| if name == "issued_test" { Err(NotWhole) } else { Ok(get(name)) }), None);
+    assert!(sums.fits(2) && !sums.fits(1), "{sums:?}");
 }
 
 #[test]
@@ -225,5 +229,6 @@ fn all_warps_of_a_group_load_what_it_visits() {
     let mut sums = Sums::default();
     let group = Group { size: 8, width: 4 };
     replay(&registered("grid-coop"), group, 0b11, (&streams, TestReads::LeafOrder), &mut sums).unwrap();
-    assert_eq!(sums.loads.issued, 5);
+    // In leaf order 48 bytes each: tests 0 to 3, 4 to 7; 8 and 0 to 2, 3 to 6; 7 and 8
+    assert_eq!((sums.loads.issued, sums.loads.segments[0]), (5, [6, 6, 2 + 5, 7, 4].iter().sum()));
 }

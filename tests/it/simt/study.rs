@@ -7,7 +7,7 @@ use rtbench::camera::CameraPath;
 use rtbench::scene::{Scene, load_in};
 use rtbench::workloads::trace::backend::{Backend, Config, RAY_TYPES, Size, Warps};
 use rtbench::workloads::trace::simt::model::{Gpu, KernelFacts, Weights};
-use rtbench::workloads::trace::simt::{Event, Loads, Sums};
+use rtbench::workloads::trace::simt::{Event, Loads, NotWhole, Sums};
 use rtbench::workloads::trace::{CpuBackend, Selection};
 
 const RENEW: &str = "RTBENCH_RENEW_STUDY";
@@ -83,7 +83,8 @@ fn vector() -> Vec<Row> {
     for line in crate::support::csv_rows(&crate::support::data("simt-study.csv")) {
         let [scene, config, structure] = ["scene", "config", "structure"].map(|column| line[column].clone());
         let side = line["side"].parse().unwrap();
-        let sums = Sums::read(|name| line.get(name).and_then(|value| value.parse().ok())).unwrap();
+        let sums =
+            Sums::read(|name| line.get(name).map_or(Ok(0), |value| value.parse().map_err(|_| NotWhole))).unwrap();
         let is_same = |row: &&mut Row| (&row.scene, &row.config, row.side) == (&scene, &config, side);
         match rows.last_mut().filter(is_same).filter(|row| row.structure == structure) {
             Some(row) => row.sums.push(sums),

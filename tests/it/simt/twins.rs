@@ -90,16 +90,75 @@ fn warps_of_one_lane_count_what_rays_count() {
                 // Where barriers keep a group together, all of its warps issue
                 if !selection.method().traversal.cooperative {
                     assert_eq!((sums.issued, sums.warps), (sums.lanes, of(kind, |c| c.rays)), "{name}");
-                    // Each event that reads something says what: a test reads a reference and three positions
-                    let method = selection.method();
-                    let reads = method.traversal.lockstep.unwrap()(&method.parameters).reads;
-                    let of_events: u64 = reads.iter().map(|read| sums.lanes[read.event as usize]).sum();
-                    assert_eq!(sums.loads.issued, of_events + 4 * sums.lanes[Event::Test as usize], "{name}");
                 }
             }
         }
     }
 }
+
+/// Each event that reads something says what: a test reads a triangle reference and three positions. In a warp of 64
+/// lanes the work-group is one, also where barriers keep it together.
+#[test]
+fn events_read_what_is_stated() {
+    let cpu = CpuBackend::new(2).unwrap();
+    let scene = load("hall:triangles=15000").unwrap();
+    for selection in selections() {
+        let method = selection.method();
+        let reads = method.traversal.lockstep.unwrap()(&method.parameters).reads;
+        let name = selection.full_name();
+        assert!(!reads.is_empty() || name == "brute", "{name}");
+        for sums in counted(&cpu, &scene, &selection, Config::PSR, 64).0 {
+            let of_events: u64 = reads.iter().map(|read| sums.issued[read.event as usize]).sum();
+            assert_eq!(sums.loads.issued, of_events + 4 * sums.issued[Event::Test as usize], "{name}");
+            let [small, middle, large] = sums.loads.segments;
+            assert!(large <= middle && middle <= small && sums.loads.issued <= large, "{name} {:?}", sums.loads);
+        }
+    }
+}
+
+/// Loads and segments of primary rays: what a wrong index, stride or size would change.
+#[test]
+fn segments_are_those_of_before() {
+    let cpu = CpuBackend::new(2).unwrap();
+    let scene = load("hall:triangles=15000").unwrap();
+    let found = selections().into_iter().map(|selection| {
+        let loads = counted(&cpu, &scene, &selection, Config::P, 32).0[0].loads;
+        (selection.full_name(), loads.issued, loads.segments)
+    });
+    let found: Vec<(String, u64, [u64; 3])> = found.collect();
+    let lines: String = found.iter().map(|(name, loads, [a, b, c])| format!("{name} {loads} {a} {b} {c}\n")).collect();
+    assert_eq!(lines, SEGMENTS);
+}
+
+/// Of each selection its loads, and their segments of 32, 64 and 128 bytes.
+const SEGMENTS: &str = "\
+brute 7966080 7966080 7966080 7966080
+grid 106003 301253 296069 291660
+grid-coop 32987 276422 236271 211845
+grid-packet 1252511 1252511 1252511 1252511
+kdtree 47731 87780 85467 82943
+kdtree:stack=1 56695 103635 101050 98725
+kdtree:search=restart 70319 136384 132821 130267
+kdtree:search=pushdown 70737 138199 134355 131709
+kdtree:search=stack 30502 74456 71728 68726
+kdtree:search=ropes 28087 75068 65110 62329
+bih 267135 914962 851631 794462
+bvh 46072 56312 46072 46072
+bvh:vote=original 49738 60260 49738 49738
+bvh:packet=8x4 29329 36770 29329 29329
+bvh-stack 13231 58752 42323 40299
+bvh-stack:cull=off 20367 101731 76732 73034
+bvh-stack:loop=if-if 17431 76872 56323 52709
+bvh-stack:loop=persistent 13231 58752 42323 40299
+bvh-stack:loop=speculative 14005 65749 47853 45422
+bvh-quantised 13258 43225 41828 39509
+bvh4 9702 38997 32016 30289
+bvh8:stack=short,entries=2 16403 51847 41519 35354
+bvh8:order=octant 18236 63729 53190 46761
+cwbvh 12467 39001 33178 29429
+bvh-stackless 34860 88886 87290 83706
+bvh-stackless:search=trail 21282 92376 59135 56773
+";
 
 #[test]
 fn wider_warps_issue_less_for_the_same_lanes() {

@@ -54,7 +54,8 @@ pub fn by_model(modelled: &[Data], published: &Published) -> Vec<Finding> {
         let Cases::Frames(cases) = claim.cases else { return None };
         let frames = Frames { data, device: 0, size: data.size(0, published.size(), None), cost: Cost::Work };
         let printed = (claim.printed)(published);
-        claims::by_model(claim.statement(), &data.devices[0].label, cases(&frames, published), &printed, claim.remark)
+        let gpu = &data.devices[0].label;
+        claims::by_model(claim.statement(), gpu, cases(&frames, published), &printed, (claim.remark, &data.notes))
     };
     CLAIMS.iter().flat_map(|claim| modelled.iter().filter_map(move |data| of(claim, data))).collect()
 }

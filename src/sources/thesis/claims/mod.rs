@@ -17,7 +17,7 @@ use super::{DOCUMENT, SOURCE};
 use crate::compare::judge::{Outcome, UNKNOWN_NOISE_PCT, Uncertain};
 use crate::sources::claims::{self, Basis, Case, Finding, Grounds, Statement};
 use crate::workloads::trace::simt::model::CLOSE;
-use list::{CLAIMS, Claim, REGISTERS};
+use list::{CLAIMS, Claim, NOT_MODELLED};
 
 /// A case of a scene.
 fn case(scene: &SceneKey, what: impl Into<String>, outcome: Outcome, numbers: String) -> Case {
@@ -52,9 +52,9 @@ pub fn by_model(modelled: &[Data], published: &Data, published_device: usize) ->
     let of = |(claim, data): (&'static Claim, &Data)| {
         let gpu = &data.devices[0].label;
         let printed = (claim.cases)(published, published::device_of(gpu).unwrap_or(published_device));
-        claims::by_model(statement(claim), gpu, (claim.cases)(data, 0), &printed, claim.remark)
+        claims::by_model(statement(claim), gpu, (claim.cases)(data, 0), &printed, (claim.remark, &data.notes))
     };
-    let claims = CLAIMS.iter().filter(|claim| claim.basis == Basis::FrameTimes && claim.id != REGISTERS);
+    let claims = CLAIMS.iter().filter(|claim| claim.basis == Basis::FrameTimes && !NOT_MODELLED.contains(&claim.id));
     claims.flat_map(|claim| modelled.iter().map(move |data| (claim, data))).filter_map(of).collect()
 }
 

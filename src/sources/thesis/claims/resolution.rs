@@ -38,12 +38,14 @@ fn rule_cases(
     let scenes = data.scenes.iter().map(|s| &s.key).filter(|key| of(key));
     let case = |key: &SceneKey| {
         let [(rule, cells), (best, best_cells)] = rows(key)?;
-        let unit = if data.modelled { "M" } else { unit };
+        let write = |value: f64| match data.modelled {
+            true => data.write_time(value),
+            false => format!("{value:.2} {unit}"),
+        };
         let numbers = format!(
-            "{cells} cells on the shortest side by the rule: {:.2} {unit}; best: {best_cells} cells, {:.2} {unit} \
-             ({:.2} times)",
-            rule.value,
-            best.value,
+            "{cells} cells on the shortest side by the rule: {}; best: {best_cells} cells, {} ({:.2} times)",
+            write(rule.value),
+            write(best.value),
             rule.value / best.value
         );
         Some(new_case(key, "P", judge(rule, best), numbers))

@@ -46,7 +46,7 @@ fn order(context: &Context, data: &Data) -> Table {
     let title = format!("Work by the SIMT model of {gpu}");
     let mut table = context.table("simt", title, &["scene", "rays", "side"], columns.collect(), rows);
     table.notes.push(WHAT.into());
-    if card.is_some() {
+    if table.rows.iter().flat_map(|row| &row.cells).any(Cell::has_published) {
         table.notes.push("2009: mean frame times of this card in the same form.".into());
     }
     table

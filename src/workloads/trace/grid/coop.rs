@@ -56,7 +56,8 @@ impl TraverseIndependent for GridCoop<'_> {
         };
         loop {
             count.inner();
-            let cell = self.grid.cell(walk.cell, count);
+            let (index, cell) = self.grid.cell(walk.cell);
+            count.read(index);
             self.grid.triangles.test::<false, C>(ray, cell.first, cell.count, &mut best, count);
             let found = best.t < walk.t_next.min_element() || (ANY && best.t < limit);
             if found || !self.grid.advance(ray, &mut walk, &mut best, count) {

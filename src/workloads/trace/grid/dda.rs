@@ -127,12 +127,12 @@ impl<'a> Grid<'a> {
         Some(Walk { cell, step, end, ahead, t_next })
     }
 
+    /// The index of a cell, and its content.
     #[inline]
-    pub(crate) fn cell<C: Count>(&self, cell: IVec3, count: &mut C) -> grid::Cell {
+    pub(crate) fn cell(&self, cell: IVec3) -> (u32, grid::Cell) {
         let index = cell.x as usize
             + self.resolution.x as usize * (cell.y as usize + self.resolution.y as usize * cell.z as usize);
-        count.read(index as u32);
-        self.grid.cells[index]
+        (index as u32, self.grid.cells[index])
     }
 
     /// Go to the neighbour behind the nearest border; false if that leaves the grid. Where several borders are at that
@@ -177,7 +177,8 @@ impl<'a> Grid<'a> {
                     let place = IVec3::new(x, y, z);
                     if place != walk.cell && (place != last || leaves) {
                         count.inner();
-                        let cell = self.cell(place, count);
+                        let (index, cell) = self.cell(place);
+                        count.read(index);
                         self.triangles.test::<false, C>(ray, cell.first, cell.count, best, count);
                     }
                 }
@@ -196,7 +197,8 @@ impl TraverseIndependent for Grid<'_> {
         };
         loop {
             count.inner();
-            let cell = self.cell(walk.cell, count);
+            let (index, cell) = self.cell(walk.cell);
+            count.read(index);
             if self.triangles.test::<ANY, C>(ray, cell.first, cell.count, &mut best, count) {
                 return best.triangle_ref;
             }

@@ -196,10 +196,11 @@ impl Traverse for GridPacket<'_> {
                 for i in across.0..=across.1 {
                     let mut place = IVec3::ZERO;
                     (place[major], place[u], place[v]) = (slice, i, j);
+                    let (index, cell) = self.grid.cell(place);
                     for lane in bits(touching) {
                         let (counted, best) = (&mut counters[lane], &mut best[lane]);
                         counted.inner();
-                        let cell = self.grid.cell(place, counted);
+                        counted.read(index);
                         self.grid.triangles.test::<false, C>(&rays[lane], cell.first, cell.count, best, counted);
                     }
                 }

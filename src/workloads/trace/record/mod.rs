@@ -5,7 +5,7 @@ mod rows;
 mod variant;
 
 pub use super::count::{ByRayType, CounterSums, RAY_TYPES};
-pub use rows::{by_ray_type, counter_metrics, structure_metrics};
+pub use rows::{by_ray_type, counter_metrics, issued_of, structure_metrics};
 pub use variant::{OPTION_AXES, split_variant, variant_of};
 
 use super::Properties;

@@ -3,6 +3,7 @@
 use super::variant::{split_variant, variant_of};
 use super::*;
 use crate::record::row::{Artifact, Check, Input, Metric, Value, metric};
+use crate::workloads::trace::simt::NotWhole;
 use serde::Deserializer;
 
 fn integer(metrics: &[Metric], name: &str) -> u64 {
@@ -11,6 +12,19 @@ fn integer(metrics: &[Metric], name: &str) -> u64 {
 
 fn number(metrics: &[Metric], name: &str) -> f64 {
     metric(metrics, None, name).and_then(Value::number).unwrap_or_default()
+}
+
+/// What warps of `width` lanes issue, by ray type; `None` where nothing is recorded, or the record is damaged.
+pub fn issued_of(row: &Row, width: u32) -> Option<ByRayType<Sums>> {
+    let mut issued = ByRayType::<Sums>::default();
+    let counted = |ray: &&str| row.metric(Some(ray), "warps").is_some();
+    let mut any = false;
+    for (sums, ray) in issued.iter_mut().zip(RAY_TYPES).filter(|(_, ray)| counted(ray)) {
+        let count = |name: &str| row.metric(Some(ray), name).map_or(Ok(0), |value| value.integer().ok_or(NotWhole));
+        *sums = Sums::read(count).filter(|sums| sums.fits(width))?;
+        any = true;
+    }
+    any.then_some(issued)
 }
 
 impl SceneRecord {
@@ -140,7 +154,8 @@ impl ConfigurationRecord {
         let (width, height) = key.axis("resolution").split_once('x')?;
         let sums = |ray: &str| CounterSums::read(|name| row.metric(Some(ray), name).and_then(Value::integer));
         let counters = RAY_TYPES.map(sums);
-        let issued = RAY_TYPES.map(|ray| Sums::read(|name| row.metric(Some(ray), name).and_then(Value::integer)));
+        let warp_width = key.axis("warp_width").parse().ok();
+        let issued = warp_width.and_then(|width| issued_of(row, width));
         Some(ConfigurationRecord {
             scene: SceneRecord::from_input(journal.input(key, "scene")?),
             camera_path: PathRecord { name: path.name.clone(), hash: path.hash.clone() },
@@ -162,8 +177,8 @@ impl ConfigurationRecord {
             kernel: row.kernels.first().cloned(),
             dispatches: row.metric(None, "dispatches").and_then(Value::integer).map(|n| n as u32),
             counters: counters[0].map(|_| counters.map(Option::unwrap_or_default)),
-            warp_width: key.axis("warp_width").parse().ok(),
-            issued: issued.iter().any(Option::is_some).then(|| issued.map(Option::unwrap_or_default)),
+            warp_width,
+            issued,
             memory: memory_of(&row.metrics),
             build_ms: number(&row.metrics, "build_ms"),
             build_threads: integer(&row.metrics, "build_threads") as usize,

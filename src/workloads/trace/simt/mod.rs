@@ -18,5 +18,5 @@ mod warps;
 pub use lockstep::{Group, Lockstep, Part, choice, maybe, repeat, replay};
 pub use reads::{Loads, Read, SEGMENTS, TestReads};
 pub use stream::{EVENTS, Event, Mark, NO_READ, Stream};
-pub use sums::Sums;
+pub use sums::{NotWhole, Sums};
 pub use warps::InWarps;

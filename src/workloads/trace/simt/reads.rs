@@ -57,8 +57,8 @@ impl Loads {
     /// The sums of both.
     #[must_use]
     pub fn with(&self, other: &Loads) -> Loads {
-        let segments = std::array::from_fn(|i| self.segments[i] + other.segments[i]);
-        Loads { issued: self.issued + other.issued, segments }
+        let segments = std::array::from_fn(|i| self.segments[i].saturating_add(other.segments[i]));
+        Loads { issued: self.issued.saturating_add(other.issued), segments }
     }
 
     /// Adds what a test reads; `indices` are the triangle references of a warp's lanes.

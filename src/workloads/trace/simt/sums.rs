@@ -3,6 +3,10 @@
 use super::reads::{Loads, SEGMENTS};
 use super::stream::{EVENTS, Event};
 
+/// A recorded count that is no whole number.
+#[derive(Clone, Copy, Debug)]
+pub struct NotWhole;
+
 /// What warps issued, summed over traversals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sums {
@@ -27,9 +31,9 @@ impl Sums {
     #[must_use]
     pub fn with(&self, other: &Sums) -> Sums {
         Sums {
-            warps: self.warps + other.warps,
-            issued: std::array::from_fn(|i| self.issued[i] + other.issued[i]),
-            lanes: std::array::from_fn(|i| self.lanes[i] + other.lanes[i]),
+            warps: self.warps.saturating_add(other.warps),
+            issued: std::array::from_fn(|i| self.issued[i].saturating_add(other.issued[i])),
+            lanes: std::array::from_fn(|i| self.lanes[i].saturating_add(other.lanes[i])),
             loads: self.loads.with(&other.loads),
         }
     }
@@ -49,12 +53,29 @@ impl Sums {
         std::iter::once(("warps".to_owned(), self.warps)).chain(events).chain(loads).collect()
     }
 
-    /// Reads what [`Sums::values`] wrote; `None` where there is no number of warps.
-    pub fn read(get: impl Fn(&str) -> Option<u64>) -> Option<Sums> {
-        let of = |what: &str| EVENTS.map(|event| get(&format!("{what}_{event}")).unwrap_or(0));
-        let segments = SEGMENTS.map(|bytes| get(&format!("segments_{bytes}")).unwrap_or(0));
-        let loads = Loads { issued: get("loads").unwrap_or(0), segments };
-        get("warps").map(|warps| Sums { warps, issued: of("issued"), lanes: of("lanes"), loads })
+    /// Reads what [`Sums::values`] wrote: `get` has a count by its name, an error for one that is no whole number.
+    /// `None` where there are no warps or something is damaged.
+    pub fn read(get: impl Fn(&str) -> Result<u64, NotWhole>) -> Option<Sums> {
+        let of = |what: &str| -> Result<[u64; EVENTS.len()], NotWhole> {
+            let mut counts = [0; EVENTS.len()];
+            for (count, event) in counts.iter_mut().zip(EVENTS) {
+                *count = get(&format!("{what}_{event}"))?;
+            }
+            Ok(counts)
+        };
+        let mut segments = [0; SEGMENTS.len()];
+        for (segments, bytes) in segments.iter_mut().zip(SEGMENTS) {
+            *segments = get(&format!("segments_{bytes}")).ok()?;
+        }
+        let loads = Loads { issued: get("loads").ok()?, segments };
+        let sums = Sums { warps: get("warps").ok()?, issued: of("issued").ok()?, lanes: of("lanes").ok()?, loads };
+        (sums.warps > 0).then_some(sums)
+    }
+
+    /// True if no more lanes take part than warps of `width` lanes have.
+    pub fn fits(&self, width: u32) -> bool {
+        let fits = |(&issued, &lanes): (&u64, &u64)| lanes <= issued.saturating_mul(u64::from(width));
+        self.issued.iter().zip(&self.lanes).all(fits)
     }
 
     /// True for a name that [`Sums::values`] gives.

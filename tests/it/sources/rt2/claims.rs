@@ -9,6 +9,7 @@ use rtbench::sources::rt2::SOURCE;
 use rtbench::sources::rt2::structures::{BIH, BVH, CULLED, MIN_MAX, ROPES, SORT, SPATIAL, STACK, SWEEP, Structure};
 use rtbench::workloads::trace::rays::Config;
 use rtbench::workloads::trace::record::by_ray_type;
+use rtbench::workloads::trace::simt::Sums;
 
 fn findings(builder: Builder) -> Vec<Finding> {
     (SOURCE.read)(&[builder.run]).claims(&Default::default())
@@ -261,4 +262,35 @@ fn forms_agree_and_repeat() {
     }
     let text = write(std::slice::from_ref(&all), "1 run", Form::Text);
     assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
+}
+
+#[test]
+fn the_model_judges_claims_about_frames() {
+    // By time and by steps each of these would be the other way round
+    let modelled = |ropes: u64, stack: u64, bvh: u64| {
+        let mut b = Builder::new();
+        for (structure, warps, ms) in [(&ROPES, ropes, 30.0), (&STACK, stack, 20.0), (&BVH, bvh, 10.0)] {
+            let record = b.shot("alien", structure, ms);
+            record.warp_width = Some(32);
+            record.issued =
+                Some(std::array::from_fn(|ray| Sums { warps: if ray == 0 { warps } else { 0 }, ..Sums::default() }));
+        }
+        findings(b)
+    };
+    let of = |all: &[Finding], claim: &str, basis: Basis| {
+        let mut found = all.iter().filter(|f| (f.claim, f.basis) == (claim, basis));
+        found.find(|f| f.basis != Basis::SimtModel || f.device == "GeForce GTX 280").cloned()
+    };
+    let verdict = |all: &[Finding], claim| of(all, claim, Basis::SimtModel).unwrap().verdict;
+    // Weights of rays differ between the kernels, by less than these numbers do
+    let all = modelled(1_000_000, 10_000_000, 100_000_000);
+    assert_eq!(["1", "2u"].map(|claim| verdict(&all, claim)), [Verdict::Holds; 2], "{all:?}");
+    let measured = |all: &[Finding]| ["1", "2u"].map(|claim| of(all, claim, Basis::FrameTimes).unwrap().verdict);
+    assert_eq!(measured(&all), [Verdict::DoesNotHold; 2]);
+    let all = modelled(100_000_000, 10_000_000, 1_000_000);
+    assert_eq!(["1", "2u", "2a"].map(|claim| verdict(&all, claim)), [Verdict::DoesNotHold; 3], "{all:?}");
+    assert!(of(&all, "2u", Basis::SimtModel).unwrap().cases[0].numbers.contains(" M: "), "{all:?}");
+    // Build times and sizes are not the model's, and without counts there are no verdicts by it
+    assert!(["4", "6", "11"].iter().all(|claim| of(&all, claim, Basis::SimtModel).is_none()));
+    assert!(findings(with(|b| frames(b, "alien", &[(&ROPES, 1.0)]))).iter().all(|f| f.basis != Basis::SimtModel));
 }

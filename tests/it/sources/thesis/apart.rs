@@ -21,7 +21,8 @@ fn a_published_number_is_never_a_value_of_the_csv() {
     // No run: nothing was measured, and every table has something of 2009.
     let lines = csv_lines(&published::data(), &options());
     assert!(lines.iter().all(|[_, value, _]| value.is_empty()), "a value without a run");
-    for id in IDS {
+    // The model's table has printed times next to work only
+    for id in IDS.into_iter().filter(|id| *id != "simt") {
         assert!(lines.iter().any(|[own, _, published]| own == id && !published.is_empty()), "{id}");
     }
     // With runs, tables of published numbers only keep to that column too: devices, register limit, speed-ups.

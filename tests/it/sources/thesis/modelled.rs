@@ -43,6 +43,9 @@ fn claims_about_gpus_have_a_verdict_of_their_own() {
     assert!(measured.contains("judged by 1 run") && !measured.contains("SIMT"), "{measured}");
     assert!(by_model.contains("In place of times") && by_model.contains("By the SIMT model of GeForce GTX 280"));
     assert!(!by_model.contains(" ms"), "a model's numbers are no times: {by_model}");
+    let markdown = claims::write(std::slice::from_ref(&findings), "1 run", Form::Markdown);
+    let (measured, by_model) = markdown.split_once("Claims of the thesis by the SIMT model").unwrap();
+    assert!(!measured.contains("SIMT") && by_model.contains("\n**3: ") && measured.contains("\n**3: "), "{markdown}");
     let summary = claims::summary(&findings, "1 run");
     assert_eq!(summary.matches("| claim | verdict |").count(), 2, "{summary}");
     assert!(claims::html(&findings).contains("<h3>By the SIMT model</h3>"));

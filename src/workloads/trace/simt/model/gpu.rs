@@ -4,6 +4,7 @@ use crate::error::{Error, Result};
 use crate::guard;
 use crate::names as texts;
 use crate::workloads::trace::Selection;
+use crate::workloads::trace::case::WARP_WIDTHS;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -36,7 +37,7 @@ pub struct Gpu {
     pub shared_bytes: u64,
     /// By which published times its orders were validated; empty for none.
     pub validated: String,
-    /// Where resident warps do not follow from work-group memory alone.
+    /// Limits of resident warps other than work-group memory.
     pub resident: Vec<Resident>,
 }
 
@@ -57,11 +58,19 @@ impl Resident {
         if key == "default" {
             return Ok(Resident { structure: None, options: Vec::new(), warps });
         }
-        let structure = Some(Selection::parse(key)?.name());
+        let selection = Selection::parse(key)?;
         let options = key.split_once(':').map_or("", |(_, options)| options).split(',');
-        let options = options.filter_map(|option| option.split_once('='));
-        let options = options.map(|(key, value)| (key.trim().to_owned(), value.trim().to_owned())).collect();
-        Ok(Resident { structure, options, warps })
+        let names = options.filter_map(|option| option.split_once('=').map(|(name, _)| name.to_owned()));
+        let options = names.map(|name| (name.clone(), selection.value(&name).to_owned())).collect();
+        Ok(Resident { structure: Some(selection.name()), options, warps })
+    }
+
+    /// True if a kernel may fit both, and neither says more about it than the other.
+    fn is_ambiguous_with(&self, other: &Resident) -> bool {
+        let differs = |(name, value): &(String, String)| other.options.iter().any(|(n, v)| n == name && v != value);
+        self.structure == other.structure
+            && self.options.len() == other.options.len()
+            && !self.options.iter().any(differs)
     }
 
     fn is_of(&self, selection: &Selection) -> bool {
@@ -93,13 +102,10 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 
 impl Gpu {
     /// The GPUs of the program whose orders published times have confirmed.
-    ///
-    /// # Errors
-    /// None in practice: a test reads the files.
-    pub fn validated() -> Result<Vec<Gpu>> {
-        let mut gpus = KNOWN.iter().map(|(name, text)| Gpu::parse(name, text)).collect::<Result<Vec<Gpu>>>()?;
-        gpus.retain(|gpu| !gpu.validated.is_empty());
-        Ok(gpus)
+    pub fn validated() -> Vec<Gpu> {
+        // The files are part of the program, and a test reads all of them
+        let gpus = KNOWN.iter().filter_map(|(name, text)| Gpu::parse(name, text).ok());
+        gpus.filter(|gpu| !gpu.validated.is_empty()).collect()
     }
 
     /// A GPU of the program by its name, or one of a file.
@@ -139,42 +145,64 @@ impl Gpu {
         let max_warps = positive("max_warps", &file.max_warps)?;
         let resident = |(key, warps): (&String, &Spanned<u32>)| match positive(key, warps)? {
             number if number <= max_warps => Resident::parse(key, number)
-                .map_err(|error| wrong(Some(warps.span()), format!("{key} names no kernels: {error}"))),
+                .map_err(|error| wrong(Some(warps.span()), format!("{key:?} names no kernels: {}", problem(error)))),
             more => Err(wrong(Some(warps.span()), format!("{key} = {more}, which is above max_warps"))),
         };
+        let entries: Vec<Resident> = file.resident_warps.iter().map(resident).collect::<Result<_>>()?;
+        for (i, (entry, (key, warps))) in entries.iter().zip(&file.resident_warps).enumerate() {
+            if let Some(other) = entries[..i].iter().position(|other| other.is_ambiguous_with(entry)) {
+                let other = file.resident_warps.keys().nth(other).map_or("", String::as_str);
+                let problem = format!("{key:?} and {other:?} fit the same kernels, and neither has more options");
+                return Err(wrong(Some(warps.span()), problem));
+            }
+        }
         Ok(Gpu {
             multiprocessors: positive("multiprocessors", &file.multiprocessors)?,
             clock_mhz: number("clock_mhz", &file.clock_mhz)?,
             cycles_per_instruction: number("cycles_per_instruction", &file.cycles_per_instruction)?,
-            warp_width: positive("warp_width", &file.warp_width)?,
+            warp_width: match *file.warp_width.get_ref() {
+                width if WARP_WIDTHS.contains(&width) => width,
+                width => {
+                    let problem = format!("warp_width = {width}, and warps are counted with 8, 16, 32 or 64 lanes");
+                    return Err(wrong(Some(file.warp_width.span()), problem));
+                }
+            },
             max_warps,
             shared_bytes: match *file.shared_bytes.get_ref() {
                 0 => return Err(wrong(Some(file.shared_bytes.span()), "shared_bytes = 0".into())),
                 bytes => bytes,
             },
-            resident: file.resident_warps.iter().map(resident).collect::<Result<_>>()?,
+            resident: entries,
             name: file.name,
-            validated: file.validated,
+            validated: file.validated.trim().to_owned(),
         })
     }
 
-    /// Resident warps of a multiprocessor: by the file's entry with the most options, or as many as the work-group
-    /// memory of the kernel leaves room for, in whole work-groups; at least one. Registers are not modelled.
+    /// Resident warps of a multiprocessor: as many as the work-group memory of the kernel leaves room for, in whole
+    /// work-groups, and no more than the file's entry with the most options says; at least one. Registers are not
+    /// modelled.
     pub fn resident_warps(&self, selection: &Selection, workgroup_bytes: u64) -> u32 {
         let entries = self.resident.iter().filter(|entry| entry.is_of(selection));
-        if let Some(entry) = entries.max_by_key(|entry| (entry.structure.is_some(), entry.options.len())) {
-            return entry.warps;
-        }
+        let entry = entries.max_by_key(|entry| (entry.structure.is_some(), entry.options.len()));
+        let most = entry.map_or(self.max_warps, |entry| entry.warps);
         let of_group = selection.method().group.size().div_ceil(self.warp_width).max(1);
         let groups = u64::from(self.max_warps / of_group);
         let fitting = self.shared_bytes.checked_div(workgroup_bytes).unwrap_or(groups);
-        (groups.min(fitting) as u32 * of_group).max(1)
+        (groups.min(fitting) as u32 * of_group).min(most).max(1)
     }
 
     /// Milliseconds in which it can at best issue so many instructions of warps.
     pub fn issue_ms(&self, instructions: f64) -> f64 {
         let per_second = f64::from(self.multiprocessors) * self.clock_mhz * 1e6 / self.cycles_per_instruction;
         instructions / per_second * 1e3
+    }
+}
+
+/// What is wrong, without the place and the hint of another input.
+pub(super) fn problem(error: Error) -> String {
+    match error {
+        Error::Input(input) => input.problem,
+        other => other.to_string(),
     }
 }
 
@@ -200,6 +228,7 @@ mod tests {
         let wrong = |text: &str| Gpu::parse("x.toml", text).unwrap_err().to_string();
         for (from, to, words) in [
             ("max_warps", "most_warps", "x.toml:6: "),
+            ("warp_width = 32", "warp_width = 33", "x.toml:5: warp_width = 33"),
             ("clock_mhz = 1000", "clock_mhz = 0", "x.toml:3: clock_mhz = 0"),
             ("clock_mhz = 1000", "clock_mhz = -1.5", "x.toml:3: clock_mhz = -1.5"),
             ("multiprocessors = 2", "multiprocessors = 0", "x.toml:2: multiprocessors = 0"),
@@ -208,7 +237,7 @@ mod tests {
             (
                 "shared_bytes = 16384\n",
                 "shared_bytes = 1\n[resident_warps]\nkd-tree = 8\n",
-                "x.toml:9: kd-tree names no kernels",
+                "x.toml:9: \"kd-tree\" names no kernels",
             ),
             (
                 "shared_bytes = 16384\n",
@@ -230,13 +259,32 @@ mod tests {
 
     #[test]
     fn the_entry_with_the_most_options_counts() {
-        let entries =
-            "[resident_warps]\ndefault = 16\nkdtree = 4\n\"kdtree:search=short-stack,memory=workgroup\" = 8\n";
+        // In another order than by their options, and with a value that is not as the program writes it
+        let entries = "[resident_warps]\ndefault = 16\n\"bih\" = 2\n\"kdtree:memory=workgroup,search=short-stack\" = 8\n\
+                       \"kdtree:search=short-stack\" = 3\nkdtree = 4\n\"kdtree:ki=02.50,kt=3,search=restart\" = 5\n";
         let gpu = Gpu::parse("x", &[GOOD, entries].concat()).unwrap();
-        let warps = |text| gpu.resident_warps(&Selection::parse(text).unwrap(), 20_000);
-        let selections =
-            ["bvh", "kdtree", "kdtree:kt=2", "kdtree:search=restart", "kdtree:memory=private", "kdtree:search=ropes"];
-        assert_eq!(selections.map(warps), [16, 8, 8, 4, 4, 4]);
+        let warps = |text| gpu.resident_warps(&Selection::parse(text).unwrap(), 100);
+        let selections = [
+            ("bvh", 16),
+            ("bih", 2),
+            ("kdtree", 8),
+            ("kdtree:kt=2", 8),
+            ("kdtree:search=restart", 4),
+            ("kdtree:memory=private", 3),
+            ("kdtree:search=ropes", 4),
+            ("kdtree:search=restart,kt=3,ki=2.5", 5),
+        ];
+        selections.iter().for_each(|&(text, expected)| assert_eq!(warps(text), expected, "{text}"));
+        let two = "[resident_warps]\n\"kdtree:memory=workgroup\" = 4\n\"kdtree:search=short-stack\" = 8\n";
+        let twice = "[resident_warps]\n\"kdtree:ki=2\" = 4\n\"kdtree:ki=2.0\" = 8\n";
+        let alias = "[resident_warps]\nbvh = 4\n\"bvh-packet\" = 8\n";
+        for entries in [two, twice, alias] {
+            let message = Gpu::parse("x.toml", &[GOOD, entries].concat()).unwrap_err().to_string();
+            assert!(message.contains("x.toml:10: ") && message.contains("fit the same kernels"), "{message}");
+        }
+        // Memory limits, too
+        let bvh = Selection::parse("bvh").unwrap();
+        assert_eq!(gpu.resident_warps(&bvh, 8192), 4);
     }
 
     #[test]

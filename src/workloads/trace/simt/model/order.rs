@@ -5,6 +5,7 @@ use super::super::sums::Sums;
 use super::gpu::Gpu;
 use super::weights::{EVENT_FACTOR, KernelFacts, Weights};
 use crate::error::Result;
+use crate::record::row::Status;
 use crate::workloads::trace::Selection;
 use crate::workloads::trace::rays::Config;
 use crate::workloads::trace::record::ConfigurationRecord;
@@ -61,12 +62,13 @@ impl Modelled {
         Ok(Modelled { name: selection.full_name(), sums, weights, warps, frames: frames.max(1) })
     }
 
-    /// What a recorded row counted, on a GPU; `None` where no warps of its width were counted.
+    /// What a recorded row counted, on a GPU; `None` where it has no result, or no warps of its width were counted.
     ///
     /// # Errors
     /// [`crate::Error::Input`] for a structure that this program does not have.
     pub fn of(record: &ConfigurationRecord, gpu: &Gpu) -> Result<Option<Modelled>> {
-        let Some(sums) = record.issued.filter(|_| record.warp_width == Some(gpu.warp_width)) else { return Ok(None) };
+        let is_usable = record.status == Status::Ok && record.verified && record.warp_width == Some(gpu.warp_width);
+        let Some(sums) = record.issued.filter(|_| is_usable) else { return Ok(None) };
         let selection = selection_of(record)?;
         Modelled::new(gpu, &selection, record.config, (sums.to_vec(), record.frames)).map(Some)
     }
@@ -102,20 +104,19 @@ pub fn rank(gpu: &Gpu, rows: &[Modelled]) -> Vec<Ranked> {
     let mut order: Vec<usize> = (0..rows.len()).collect();
     order.sort_by(|&a, &b| works[a].total_cmp(&works[b]));
     let Some(&first) = order.first() else { return Vec::new() };
-    let mut random = draws();
+    let mut random = draws(1);
+    let mut of_row: Vec<_> = rows.iter().map(|row| draws(seed(&row.name))).collect();
     // Of each row, its work as a multiple of the first one's, for each draw. A step is another one in each kernel;
     // what else there is, such as a triangle test, is alike in all of them, and is drawn together.
     let mut drawn: Vec<Vec<f64>> = vec![Vec::with_capacity(DRAWS); rows.len()];
     for _ in 0..DRAWS {
         let common: [f64; EVENTS.len() + 1] = std::array::from_fn(|_| random());
-        let works: Vec<f64> = rows
-            .iter()
-            .map(|row| {
-                let mut factors = common;
-                factors[1 + Event::Step as usize] = random();
-                row.work_by(&row.weights.scaled(&factors))
-            })
-            .collect();
+        let drawn_work = |(row, of_row): (&Modelled, &mut dyn FnMut() -> f64)| {
+            let mut factors = common;
+            factors[1 + Event::Step as usize] = of_row();
+            row.work_by(&row.weights.scaled(&factors))
+        };
+        let works: Vec<f64> = rows.iter().zip(&mut of_row).map(|(row, draw)| drawn_work((row, draw))).collect();
         drawn.iter_mut().zip(&works).for_each(|(drawn, work)| drawn.push(work / works[first]));
     }
     // The first one of those that are too close to each other
@@ -137,9 +138,14 @@ pub fn rank(gpu: &Gpu, rows: &[Modelled]) -> Vec<Ranked> {
     ranked.collect()
 }
 
-/// Factors from 1 / [`EVENT_FACTOR`] to [`EVENT_FACTOR`], the same ones each time.
-fn draws() -> impl FnMut() -> f64 {
-    let mut state = 1_u32;
+/// A number that follows from a name (FNV-1a): a row's draws are its own, whatever other rows there are.
+fn seed(name: &str) -> u32 {
+    name.bytes().fold(0x811c_9dc5, |hash, byte| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193))
+}
+
+/// Factors from 1 / [`EVENT_FACTOR`] to [`EVENT_FACTOR`], the same ones each time for a seed.
+fn draws(seed: u32) -> impl FnMut() -> f64 {
+    let mut state = seed;
     move || {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         let share = f64::from(state >> 8) / f64::from(1_u32 << 24);

@@ -1,12 +1,13 @@
 //! Recorded rows with counts of warps, in groups that a GPU puts in order.
 
 use super::super::sums::Sums;
-use super::gpu::Gpu;
+use super::gpu::{Gpu, problem};
 use super::order::{Modelled, rank, selection_of};
 use crate::error::{Error, Result};
 use crate::record::row::Status;
 use crate::report::{Cell, Column, Form, Origin, Row as TableRow, Table};
 use crate::workloads::trace::record::{ConfigurationRecord, TraceJournal};
+use std::collections::BTreeSet;
 
 const ORIGIN: Origin = Origin { source: "simt", kind: "table", published: "" };
 
@@ -20,16 +21,17 @@ struct Group {
 
 fn groups(journals: &[&TraceJournal], gpu: &Gpu) -> Result<Vec<Group>> {
     let mut groups: Vec<(Vec<String>, Group)> = Vec::new();
-    let mut other_width = None;
+    let mut other_widths = BTreeSet::new();
     for record in journals.iter().flat_map(|journal| &journal.configurations) {
         let Some(width) = record.warp_width else { continue };
         if width != gpu.warp_width {
-            other_width.get_or_insert(width);
+            other_widths.insert(width);
             continue;
         }
         let ConfigurationRecord { scene, camera_path, config, frames, .. } = record;
         let size = format!("{}x{}", record.width, record.height);
-        let title = format!("{}, {config:?}, {size}, {}, {frames} frames", scene.name, camera_path.name);
+        let frames = if *frames == 1 { "1 frame".to_owned() } else { format!("{frames} frames") };
+        let title = format!("{}, {config:?}, {size}, {}, {frames}", scene.name, camera_path.name);
         // Files of the same name may have other contents
         let key = vec![title.clone(), scene.hash.clone(), camera_path.hash.clone()];
         let index = groups.iter().position(|(known, _)| *known == key).unwrap_or_else(|| {
@@ -37,32 +39,48 @@ fn groups(journals: &[&TraceJournal], gpu: &Gpu) -> Result<Vec<Group>> {
             groups.len() - 1
         });
         let group = &mut groups[index].1;
-        match Modelled::of(record, gpu)? {
-            Some(modelled) => {
+        let name = selection_of(record).map_or_else(|_| unknown_name(record), |selection| selection.full_name());
+        let reason = match Modelled::of(record, gpu) {
+            Ok(Some(modelled)) => {
                 // Of several rows of the same, the last one counts
-                group.rows.retain(|known| known.name != modelled.name);
-                group.without.retain(|(name, _)| *name != modelled.name);
+                group.rows.retain(|known| known.name != name);
+                group.without.retain(|(known, _)| *known != name);
                 group.rows.push(modelled);
+                continue;
             }
-            None => {
-                let name = selection_of(record).map_or(record.structure.clone(), |s| s.full_name());
-                let reason = match record.status {
-                    Status::Ok => record.warnings.iter().find(|warning| warning.starts_with("warps are not counted")),
-                    _ => Some(&record.message),
-                };
-                let is_known = group.rows.iter().any(|known| known.name == name)
-                    || group.without.iter().any(|(known, _)| *known == name);
-                if !is_known {
-                    group.without.push((name, reason.map_or("not counted", String::as_str).to_owned()));
-                }
+            Err(error) => problem(error),
+            Ok(None) if record.status != Status::Ok => record.message.clone(),
+            Ok(None) => {
+                let warning = record.warnings.iter().find(|warning| warning.starts_with("warps are not counted"));
+                warning.map_or("no counts, or damaged ones", String::as_str).to_owned()
             }
+        };
+        let is_known =
+            group.rows.iter().any(|known| known.name == name) || group.without.iter().any(|(known, _)| *known == name);
+        if !is_known {
+            group.without.push((name, reason));
         }
     }
-    if let Some(width) = other_width.filter(|_| groups.is_empty()) {
-        let problem = format!("warps of the run have {width} lanes, those of {} have {}", gpu.name, gpu.warp_width);
+    if !other_widths.is_empty() && groups.is_empty() {
+        let widths: Vec<String> = other_widths.iter().map(u32::to_string).collect();
+        let widths = widths.join(", ");
+        let problem = format!("warps of the run have {widths} lanes, those of {} have {}", gpu.name, gpu.warp_width);
         return Err(Error::argument("--gpu", problem, "measure with that --warp-width, or give another GPU"));
     }
-    Ok(groups.into_iter().map(|(_, group)| group).collect())
+    let titles: Vec<String> = groups.iter().map(|(_, group)| group.title.clone()).collect();
+    let with_hash = |(key, mut group): (Vec<String>, Group)| {
+        if titles.iter().filter(|title| **title == group.title).count() > 1 {
+            let [scene, path] = [1, 2].map(|part| key[part].get(..8).unwrap_or(&key[part]));
+            group.title += &format!(" (scene {scene}, path {path})");
+        }
+        group
+    };
+    Ok(groups.into_iter().map(with_hash).collect())
+}
+
+/// The name of a structure that this program does not have.
+fn unknown_name(record: &ConfigurationRecord) -> String {
+    [record.structure.as_str(), record.variant.as_str()].join(":")
 }
 
 /// A table for each scene, path, ray configuration and size: the order of structures on a GPU.
@@ -74,6 +92,12 @@ pub fn tables(journals: &[&TraceJournal], gpu: &Gpu) -> Result<Vec<Table>> {
     if groups.is_empty() {
         let hint = "measure with --warp-width, as `rtbench sweep --preset simt` does";
         return Err(Error::argument("RUN", "it has no counts of warps", hint));
+    }
+    if let Some((name, reason)) = groups.iter().flat_map(|group| &group.without).next()
+        && groups.iter().all(|group| group.rows.is_empty())
+    {
+        let problem = format!("nothing of it is modelled: {name} ({reason})");
+        return Err(Error::argument("RUN", problem, "docs/simt-model.md has what is"));
     }
     Ok(groups.into_iter().map(|group| table(group, gpu)).collect())
 }

@@ -5,6 +5,7 @@ use super::super::sums::Sums;
 use crate::device::Source;
 use crate::error::{Error, Result};
 use crate::workloads::trace::gpu::kernels::{self, Entry, Kernel, StagedPass};
+use crate::workloads::trace::method::TriangleLayout;
 use crate::workloads::trace::rays::Config;
 use crate::workloads::trace::{Method, Selection};
 use std::collections::HashMap;
@@ -108,6 +109,7 @@ fn timed_kernel(method: Method, config: Config) -> Result<Source> {
     } else {
         Entry::Render { config, counting: false }
     };
-    let kernel = Kernel { entry, method, stack_size: 32, software_threads: 0, textures: false, leaf_order: false };
+    let leaf_order = method.traversal.leaf_order && method.triangles == TriangleLayout::LeafOrder;
+    let kernel = Kernel { entry, method, stack_size: 32, software_threads: 0, textures: false, leaf_order };
     kernel.assemble().map_err(Error::Device)
 }
