@@ -3,8 +3,9 @@
 use rtbench::compare::judge::Verdict;
 use rtbench::report::Cell;
 use rtbench::sources::claims::{self, Basis, Finding, Form};
+use rtbench::sources::rt2;
 use rtbench::sources::runs::RecordedRun;
-use rtbench::sources::thesis::Numbers;
+use rtbench::sources::thesis::{self, Numbers};
 use rtbench::sources::{Options, Results};
 use rtbench::workloads::trace::simt::Event;
 use std::path::Path;
@@ -95,4 +96,28 @@ fn the_table_shows_work_next_to_printed_times() {
     }
     let tables = Numbers::of(&[committed("lavapipe-2core-2026-11-29")]).tables(&["simt"], &Options::default());
     assert!(tables[0].rows.is_empty() && tables[0].notes[0].contains("--warp-width 32"), "{:?}", tables[0].notes);
+}
+
+/// The table of verdicts in docs/simt-model.md.
+#[test]
+fn the_document_has_the_verdicts_of_the_committed_run() {
+    let run = committed("simt-2026-11-30");
+    let numbers = [&thesis::SOURCE, &rt2::SOURCE].map(|source| (source.read)(std::slice::from_ref(&run)));
+    let findings: Vec<Finding> = numbers.iter().flat_map(|numbers| numbers.claims(&Options::default())).collect();
+    let modelled = findings.iter().filter(|finding| finding.basis == Basis::SimtModel);
+    let mut found: Vec<[String; 2]> = Vec::new();
+    for finding in modelled {
+        let (of, verdict) = (format!("{} {}", finding.source, finding.claim), finding.verdict.in_words());
+        match found.iter_mut().find(|[known, _]| *known == of) {
+            // The GPUs are in one order in all claims
+            Some([_, verdicts]) => *verdicts += &format!(" | {verdict}"),
+            None => found.push([of, verdict.to_owned()]),
+        }
+    }
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/simt-model.md");
+    let text = std::fs::read_to_string(path).unwrap();
+    for [of, verdicts] in &found {
+        assert!(text.contains(&format!("| {of} | {verdicts} |")), "{of}: {verdicts}");
+    }
+    assert_eq!(found.len(), 16, "{found:?}");
 }
